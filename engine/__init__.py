@@ -1,0 +1,4 @@
+"""One simulation: a scene in, a job directory out."""
+
+PHYSICS_VERSION = 1
+"""Raised by hand whenever the same scene gives other results."""

@@ -1,0 +1,106 @@
+"""The builder of collision scenes: two spheres meeting at a given speed and angle (engine/physics.md, section 8)."""
+
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from engine.materials import PARAMETER_SETS, Fracture, Material
+from engine.orbit import Approach, approach
+from engine.scene import Body, Gravity, Numerics, Output, Physics, Scene, Viscosity
+from engine.validation import Finite, Frozen, Positive, suggestion
+
+
+class Collision(Frozen):
+    """Two spheres without spin; t = 0 is the contact of point masses at separation R1 + R2.
+
+    velocity: relative speed at contact [m/s].
+    angle: impact angle [deg], 0 is head-on.
+    radius, projectile_radius: radii of target and projectile [m]; equal unless the second is given.
+    particles: particles in the target; the projectile has the same mass per particle.
+    end_time: simulated time after contact [s].
+    start_separation: distance of the centres at the start, in contact distances R1 + R2.
+    parameter_set: constants and rules of friction and fracture, `sugiura2018` or `talk`.
+    friction: friction coefficient of damaged rock [-], when other than the parameter set's.
+    fracture: rules of fracture, when other than the parameter set's.
+    """
+
+    velocity: Positive
+    angle: Annotated[float, Field(ge=0.0, le=90.0)]
+    radius: Positive = 50.0e3
+    projectile_radius: Positive | None = None
+    particles: Annotated[int, Field(ge=1)] = 20000
+    end_time: Finite = 15200.0
+    start_separation: Annotated[float, Field(gt=1.0, allow_inf_nan=False)] = 2.0
+    seed: Annotated[int, Field(ge=0)] = 1
+    parameter_set: str = "sugiura2018"
+    material: Material = Material()
+    friction: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
+    fracture: Fracture | None = None
+    gravity: Gravity | None = Gravity()
+    viscosity: Viscosity | None = None
+    numerics: Numerics = Numerics()
+    output: Output = Output()
+
+    @model_validator(mode="after")
+    def _parameter_set_is_known(self) -> Self:
+        if self.parameter_set not in PARAMETER_SETS:
+            hint = suggestion(self.parameter_set, list(PARAMETER_SETS))
+            raise ValueError(f"unknown parameter_set '{self.parameter_set}'{hint}")
+        return self
+
+    @model_validator(mode="after")
+    def _ends_after_contact(self) -> Self:
+        if self.end_time <= 0.0:
+            raise ValueError(f"end_time counts from contact: {self.end_time} s must be greater than 0")
+        return self
+
+    def bodies_at_contact(self) -> tuple[Body, Body]:
+        """Target and projectile, both still at the origin."""
+        chosen = PARAMETER_SETS[self.parameter_set]
+        friction = chosen.damaged_friction if self.friction is None else self.friction
+        material = self.material.model_copy(update={"damaged_friction": friction})
+        small = self.radius if self.projectile_radius is None else self.projectile_radius
+        share = max(1, round(self.particles * (small / self.radius) ** 3))
+        hydrostatic = self.gravity is not None
+        return (
+            Body(
+                name="target", radius=self.radius, particles=self.particles, material=material, hydrostatic=hydrostatic
+            ),
+            Body(name="projectile", radius=small, particles=share, material=material, hydrostatic=hydrostatic),
+        )
+
+    def approach(self) -> Approach:
+        """Where the projectile starts relative to the target, and how long it takes to contact."""
+        target, projectile = self.bodies_at_contact()
+        contact, angle = target.radius + projectile.radius, np.deg2rad(self.angle)
+        mass = target.mass + projectile.mass if self.gravity else 0.0
+        position = contact * np.array([np.cos(angle), np.sin(angle), 0.0])
+        velocity = np.array([-self.velocity, 0.0, 0.0])
+        return approach(position, velocity, mass, self.start_separation * contact)
+
+    def scene(self) -> Scene:
+        """The scene at the start of the approach, in the frame of the centre of mass."""
+        start = self.approach()
+        target, projectile = self.bodies_at_contact()
+        fraction = projectile.mass / (target.mass + projectile.mass)
+        return Scene(
+            bodies=(_moved(target, start, -fraction), _moved(projectile, start, 1.0 - fraction)),
+            start_time=-start.duration,
+            end_time=self.end_time,
+            seed=self.seed,
+            physics=Physics(
+                fracture=self.fracture or PARAMETER_SETS[self.parameter_set].fracture,
+                gravity=self.gravity,
+                viscosity=self.viscosity,
+            ),
+            numerics=self.numerics,
+            output=self.output,
+        )
+
+
+def _moved(body: Body, start: Approach, share: float) -> Body:
+    """The body at its share of the relative position and velocity."""
+    position = tuple(float(share * value) for value in start.position)
+    velocity = tuple(float(share * value) for value in start.velocity)
+    return body.model_copy(update={"position": position, "velocity": velocity})

@@ -1,0 +1,166 @@
+"""The job directory: which files it holds, who is running it, and how far it is."""
+
+import fcntl
+import os
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, fields
+from json import JSONDecodeError, loads
+from pathlib import Path
+
+import psutil
+
+from engine.errors import JobError
+from engine.storage import write_json
+
+STATES = ("pending", "running", "interrupted", "done", "failed")
+HEARTBEAT_PERIOD = 2.0
+"""Time [s] between two writes of status.json by a run."""
+HEARTBEAT_LIMIT = 120.0
+"""Age [s] at which the heartbeat of a run on another host counts as stopped."""
+
+
+@dataclass(frozen=True)
+class Status:
+    """Content of status.json, as a run last wrote it.
+
+    Attributes:
+        state: `running`, `done` or `failed`; readers derive `pending` and `interrupted`.
+        reason: one line on a failure, empty otherwise.
+        time, start_time, end_time: simulated time [s], now and at both ends.
+        step: time steps done.
+        wall_time: computing time [s] of all sessions of this job.
+        steps_per_second: recent rate [1/s].
+        time_left: estimate of the computing time to the end [s].
+        heartbeat: when this was written [s since the epoch].
+        host, pid, process_start: the process that wrote it.
+    """
+
+    state: str
+    reason: str = ""
+    time: float = 0.0
+    start_time: float = 0.0
+    end_time: float = 0.0
+    step: int = 0
+    wall_time: float = 0.0
+    steps_per_second: float = 0.0
+    time_left: float = 0.0
+    heartbeat: float = 0.0
+    host: str = ""
+    pid: int = 0
+    process_start: float = 0.0
+
+    @property
+    def progress(self) -> float:
+        """Share of the simulated time that is done, 0 to 1."""
+        span = self.end_time - self.start_time
+        return (self.time - self.start_time) / span if span > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class JobDirectory:
+    """Names of the files of one job."""
+
+    path: Path
+
+    @property
+    def status_file(self) -> Path:
+        """State and progress, rewritten every few seconds."""
+        return self.path / "status.json"
+
+    @property
+    def log(self) -> Path:
+        """What the run reported, appended."""
+        return self.path / "log.txt"
+
+    @property
+    def history(self) -> Path:
+        """Conserved quantities over time."""
+        return self.path / "history.nc"
+
+    @property
+    def final(self) -> Path:
+        """Particles at the end; there only when the job is done."""
+        return self.path / "final.nc"
+
+    @property
+    def provenance(self) -> Path:
+        """Command, code, packages and device of every session."""
+        return self.path / "provenance.json"
+
+    @property
+    def checkpoint(self) -> Path:
+        """Everything the next step reads."""
+        return self.path / "checkpoint.nc"
+
+    @property
+    def previous_checkpoint(self) -> Path:
+        """The checkpoint before the last."""
+        return self.path / "checkpoint.previous.nc"
+
+    @property
+    def snapshots(self) -> Path:
+        """Directory of particle snapshots, one file per time."""
+        return self.path / "snapshots"
+
+    def status(self) -> Status:
+        """How the job stands now: a run whose process is gone reads `interrupted`, none at all `pending`.
+
+        Raises:
+            JobError: status.json is damaged.
+        """
+        try:
+            content = loads(self.status_file.read_text(encoding="utf-8"))
+            known = {field.name for field in fields(Status)}
+            status = Status(**{key: value for key, value in content.items() if key in known})
+        except FileNotFoundError:
+            return Status(state="pending")
+        except (OSError, JSONDecodeError, UnicodeDecodeError, TypeError, AttributeError) as error:
+            raise JobError(f"{self.status_file}: damaged: {error}") from error
+        if status.state == "running" and not _is_alive(status):
+            return Status(**{**asdict(status), "state": "interrupted"})
+        return status
+
+    def write_status(self, status: Status) -> None:
+        """Write status.json in the name of this process, now."""
+        process = psutil.Process()
+        own = {
+            "heartbeat": time.time(),
+            "host": socket.gethostname(),
+            "pid": process.pid,
+            "process_start": process.create_time(),
+        }
+        write_json(self.status_file, {**asdict(status), **own})
+
+    @contextmanager
+    def claim(self) -> Iterator[None]:
+        """Hold the job for this process; the claim dies with the process.
+
+        Raises:
+            JobError: another process runs this job.
+        """
+        with (self.path / "lock").open("w") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError as error:
+                raise JobError(f"{self.path}: already being run{_by(self.status())}; wait for it or stop it") from error
+            status = self.status()
+            if status.state == "running" and status.pid != os.getpid():
+                raise JobError(f"{self.path}: already being run{_by(status)}; wait for it or stop it")
+            yield
+
+
+def _by(status: Status) -> str:
+    return f" by process {status.pid} on {status.host}" if status.pid else ""
+
+
+def _is_alive(status: Status) -> bool:
+    """Whether the process that wrote `status` still runs; across hosts its heartbeat decides."""
+    if status.host != socket.gethostname():
+        return time.time() - status.heartbeat < HEARTBEAT_LIMIT
+    try:
+        return abs(psutil.Process(status.pid).create_time() - status.process_start) < 1.0
+    except psutil.Error:
+        return False

@@ -1,0 +1,86 @@
+"""Material constants and the two published parameter sets (engine/physics.md, sections 2-5)."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from engine.validation import Frozen, NonNegative, Positive
+
+
+class Tillotson(Frozen):
+    """Tillotson constants; the defaults are basalt (Benz & Asphaug 1999)."""
+
+    a: Positive = 0.5
+    b: Positive = 1.5
+    A: Positive = 2.67e10
+    B: NonNegative = 2.67e10
+    E0: Positive = 4.87e8
+    E_iv: Positive = 4.72e6
+    E_cv: Positive = 1.82e7
+    alpha: NonNegative = 5.0
+    beta: NonNegative = 5.0
+
+
+class Material(Frozen):
+    """One solid [SI units]; the defaults are basalt with the constants of Sugiura et al. 2018."""
+
+    rho0: Positive = 2700.0
+    tillotson: Tillotson = Tillotson()
+    shear_modulus: Positive = 2.27e10
+    cohesion: NonNegative = 1.0e7
+    intact_friction: NonNegative = 1.0
+    strength_limit: Positive = 3.5e9
+    melt_energy: Positive = 3.4e6
+    damaged_friction: NonNegative = 0.839
+    weibull_k: Positive = 4.0e35
+    weibull_m: Annotated[float, Field(ge=1.0, allow_inf_nan=False)] = 9.0
+
+    @property
+    def longitudinal_modulus(self) -> float:
+        """K + 4G/3 [Pa] at the reference state."""
+        return self.tillotson.A + 4.0 / 3.0 * self.shear_modulus
+
+    @property
+    def longitudinal_speed(self) -> float:
+        """Speed of longitudinal waves [m/s] at the reference state."""
+        return float((self.longitudinal_modulus / self.rho0) ** 0.5)
+
+    @property
+    def young_modulus(self) -> float:
+        """9KG/(3K+G) [Pa] at the reference state."""
+        bulk, shear = self.tillotson.A, self.shear_modulus
+        return 9.0 * bulk * shear / (3.0 * bulk + shear)
+
+
+class Fracture(Frozen):
+    """Weibull flaws and Grady-Kipp damage growth (engine/physics.md, section 5).
+
+    flaws: `covered` draws flaws until every particle holds one, `2NlnN` draws that many.
+    strain: modulus that turns the largest tensile stress into the local strain.
+    growth_speed: crack speed in units of the longitudinal sound speed.
+    growth_range: distance R_s a crack runs to break one particle, in particle spacings h.
+    per_flaw: cracks grow from every active flaw at once, so the rate is n_act times one crack's.
+    In both, D never exceeds the share of the particle's flaws that are active.
+    """
+
+    flaws: Literal["covered", "2NlnN"] = "covered"
+    strain: Literal["longitudinal", "young"] = "longitudinal"
+    growth_speed: Positive = 0.4
+    growth_range: Positive = 3.0
+    per_flaw: bool = True
+
+
+class ParameterSet(Frozen):
+    """Everything in which two published set-ups of the same collision differ."""
+
+    damaged_friction: float
+    fracture: Fracture
+
+
+PARAMETER_SETS = {
+    "sugiura2018": ParameterSet(damaged_friction=0.839, fracture=Fracture()),
+    "talk": ParameterSet(
+        damaged_friction=0.945,
+        fracture=Fracture(flaws="2NlnN", strain="young", growth_speed=0.5, per_flaw=False),
+    ),
+}

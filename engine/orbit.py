@@ -1,0 +1,91 @@
+"""Two point masses before contact: where they came from (engine/physics.md, section 8)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+G = 6.6743e-11
+"""Gravitational constant [m^3 kg^-1 s^-2] (CODATA 2018)."""
+
+NEAREST_START = 1.1
+"""A bound pair whose apocentre is nearer than this many contact distances starts at this distance instead."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Approach:
+    """Relative state of the projectile at the start.
+
+    Attributes:
+        position: relative position [m], shape [3].
+        velocity: relative velocity [m/s], shape [3].
+        duration: time from here to point-mass contact [s].
+        start: `separation`, or `apocentre` or `nearest` when the pair never was as far out as asked.
+    """
+
+    position: Array
+    velocity: Array
+    duration: float
+    start: str
+
+
+def approach(position: Array, velocity: Array, total_mass: float, separation: float) -> Approach:
+    """Relative state at `separation`, found by integrating the two-body problem backward from contact.
+
+    Args:
+        position: relative position at contact [m], shape [3].
+        velocity: relative velocity at contact [m/s], shape [3].
+        total_mass: mass of both bodies [kg]; 0 for bodies without gravity.
+        separation: distance of the centres at the start [m].
+    """
+    mu = G * total_mass
+    farthest = apocentre(position, velocity, mu)
+    if farthest <= NEAREST_START * float(np.linalg.norm(position)):
+        return _straight_back(position, velocity)
+    bound = farthest < separation
+    event = _turning_point if bound else _distance(separation)
+    state, duration = _backward(np.concatenate([position, velocity]), mu, event)
+    return Approach(state[:3], state[3:], duration, "apocentre" if bound else "separation")
+
+
+def apocentre(position: Array, velocity: Array, mu: float) -> float:
+    """Largest distance [m] of a two-body orbit; infinite when unbound."""
+    energy = 0.5 * float(velocity @ velocity) - mu / float(np.linalg.norm(position))
+    if energy >= 0.0:
+        return float("inf")
+    momentum = float(np.linalg.norm(np.cross(position, velocity)))
+    eccentricity = max(0.0, 1.0 + 2.0 * energy * (momentum / mu) ** 2) ** 0.5
+    return -mu / (2.0 * energy) * (1.0 + eccentricity)
+
+
+def _straight_back(position: Array, velocity: Array) -> Approach:
+    """Bodies drawn apart along their line of centres, with the velocity they have at contact."""
+    gap = (NEAREST_START - 1.0) * float(np.linalg.norm(position))
+    return Approach(position * NEAREST_START, velocity, gap / float(np.linalg.norm(velocity)), "nearest")
+
+
+def _turning_point(time: float, state: Array) -> float:
+    return float(state[:3] @ state[3:])
+
+
+def _distance(separation: float) -> Callable[[float, Array], float]:
+    def beyond(time: float, state: Array) -> float:
+        return float(np.linalg.norm(state[:3])) - separation
+
+    return beyond
+
+
+def _backward(contact: Array, mu: float, event: Callable[[float, Array], float]) -> tuple[Array, float]:
+    """State when `event` rises through zero before `contact`, and the time from there to contact."""
+
+    def rate(time: float, state: Array) -> Array:
+        return np.concatenate([state[3:], -mu * state[:3] / np.linalg.norm(state[:3]) ** 3])
+
+    event.terminal, event.direction = True, 1.0  # type: ignore[attr-defined]
+    scale = float(np.linalg.norm(contact[:3]) / np.linalg.norm(contact[3:]))
+    path = solve_ivp(rate, (0.0, -1e6 * scale), contact, method="DOP853", events=event, rtol=1e-12, atol=1e-9)
+    return path.y_events[0][0], -float(path.t_events[0][0])
