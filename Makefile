@@ -1,0 +1,70 @@
+# Everything this project does, from a fresh machine on: the first target that needs it installs it into .venv.
+
+STUDY ?= quick
+RUNS ?= runs
+WORKERS ?=
+THREADS ?=
+OPTIONS ?=
+PYTHON ?= $(shell for candidate in python3 python3.13 python3.12 python3.11; do \
+	$$candidate -c 'import sys, venv, ensurepip; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' \
+	2>/dev/null && echo $$candidate && break; done)
+
+VENV := .venv
+RUN := $(VENV)/bin/python -m
+INSTALLED := $(VENV)/installed
+RESOURCES = $(if $(WORKERS),--workers $(WORKERS)) $(if $(THREADS),--threads-per-job $(THREADS)) $(OPTIONS)
+
+.DEFAULT_GOAL := help
+.PHONY: help install campaign resume plan status plots test test-slow lint clean
+
+help: ## explain all targets
+	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
+	@echo
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@echo
+	@echo '  STUDY    a shipped study ($(basename $(notdir $(wildcard campaigns/studies/*.toml)))) or a path to a study file'
+	@echo '  RUNS     directory that holds the results of all studies'
+	@echo '  WORKERS  jobs at the same time; THREADS: CPU threads of one job'
+	@echo '  OPTIONS  further options, as --retry-failed, --scheduler ADDRESS or --slurm'
+
+install: $(INSTALLED) ## make .venv and install everything into it
+
+campaign: $(INSTALLED) ## run all unfinished jobs of STUDY, collect the results and plot them
+	@$(RUN) campaigns run '$(STUDY)' --runs '$(RUNS)' $(RESOURCES)
+	@$(MAKE) --no-print-directory plots
+
+resume: $(INSTALLED) ## go on with a STUDY that was stopped, and plot its results
+	@$(RUN) campaigns resume '$(STUDY)' --runs '$(RUNS)' $(RESOURCES)
+	@$(MAKE) --no-print-directory plots
+
+plan: $(INSTALLED) ## show what a run of STUDY would do with every job, and why
+	@$(RUN) campaigns plan '$(STUDY)' --runs '$(RUNS)'
+
+status: $(INSTALLED) ## show how every job of STUDY stands
+	@$(RUN) campaigns status '$(STUDY)' --runs '$(RUNS)'
+
+plots: $(INSTALLED) ## draw the figures and the report of STUDY
+	@directory=$$($(RUN) campaigns where '$(STUDY)' --runs '$(RUNS)') && $(RUN) analysis plots "$$directory"
+
+test: $(INSTALLED) ## run the fast tests
+	$(RUN) pytest
+
+test-slow: $(INSTALLED) ## run the tests that take minutes
+	$(RUN) pytest -m slow
+
+lint: $(INSTALLED) ## check style and types
+	$(RUN) ruff check .
+	$(RUN) ruff format --check .
+	$(RUN) mypy
+
+clean: ## remove .venv and caches; results stay
+	rm -rf $(VENV) build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find engine campaigns analysis tests -name __pycache__ -prune -exec rm -rf {} +
+
+$(INSTALLED): pyproject.toml
+	@test -n '$(PYTHON)' || { echo 'no Python 3.11, 3.12 or 3.13 with venv found;' \
+		'install one, or name it: make PYTHON=/path/to/python3.12' >&2; exit 1; }
+	@$(RUN) pip --version >/dev/null 2>&1 || { echo 'making $(VENV)'; $(PYTHON) -m venv --clear $(VENV); }
+	@echo 'installing into $(VENV)'
+	@$(RUN) pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@

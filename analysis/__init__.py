@@ -1,0 +1,1 @@
+"""Finished jobs in, their outcomes out: clumps, shapes, one data set, tables and figures."""

@@ -1,0 +1,51 @@
+"""The command line: `python -m analysis plots CAMPAIGN` and `python -m analysis remnant JOB`."""
+
+import sys
+from pathlib import Path
+
+import typer
+
+from analysis.plots import plots as draw
+from analysis.remnant import latest, measure
+from analysis.tables import printed, reasons, shape_table
+from analysis.variables import OUTCOMES
+from engine.errors import JobError, RunFault, SceneError
+from engine.jobdir import JobDirectory
+
+app = typer.Typer(help=__doc__, add_completion=False, no_args_is_help=True)
+
+
+@app.command()
+def plots(campaign: Path) -> None:
+    """Collect a campaign, print its table of shapes, and draw its figures."""
+    results, written = draw(campaign)
+    typer.echo(printed(shape_table(results)))
+    for line in reasons(results):
+        typer.echo(line)
+    if not (results["state"] == "done").any():
+        typer.echo("no job of this campaign is done yet: table and figures show states only")
+    typer.echo("written: " + ", ".join(str(path) for path in written))
+
+
+@app.command()
+def remnant(job: Path) -> None:
+    """Print the outcome of one job, from its last snapshot when it is not done."""
+    directory = JobDirectory(job)
+    particles = latest(directory)
+    if not directory.final.is_file():
+        typer.echo(f"not done: last snapshot, {particles.time:g} s after contact")
+    for name, value in measure(directory, particles).items():
+        typer.echo(f"{name:24} {value:<14.6g} {OUTCOMES[name].units:7} {OUTCOMES[name].long_name}")
+
+
+def main() -> None:
+    """Run the command line; whatever the user can mend is one line on stderr and exit code 2."""
+    try:
+        app()
+    except (SceneError, JobError, RunFault, OSError) as error:
+        typer.echo(str(error), err=True)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,112 @@
+"""Every job of a campaign in one data set, results.nc."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from analysis.campaign import NONE, Campaign, Scalar, plain, read_campaign
+from analysis.remnant import Outcome, outcome
+from analysis.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
+from engine.jobdir import JobDirectory
+from engine.storage import write_dataset
+
+ALWAYS = ("velocity", "angle", "end_time")
+"""Parameters that are coordinates even when every job has the same."""
+
+
+def collect(campaign_directory: Path) -> xr.Dataset:
+    """Measure every job, write results.nc into the campaign directory and return it.
+
+    Cells without an outcome are NaN and carry the state of their job. Parameters in which jobs differ are
+    coordinates; those all jobs share are attributes.
+
+    Raises:
+        SceneError: there is no campaign.json, or it does not describe a campaign.
+    """
+    campaign = read_campaign(campaign_directory)
+    outcomes = [
+        outcome(JobDirectory(campaign_directory / job.directory), campaign.physics_version) for job in campaign.jobs
+    ]
+    results = assemble(campaign, outcomes)
+    write_dataset(campaign_directory / "results.nc", results)
+    return results
+
+
+def assemble(campaign: Campaign, outcomes: list[Outcome]) -> xr.Dataset:
+    """The data set of a campaign from the outcome of each of its jobs, in their order."""
+    shared, differing = _parameters(campaign)
+    return xr.Dataset(
+        _numbers(campaign, outcomes) | _texts(campaign, outcomes),
+        coords=_axes(campaign) | {name: _parameter(campaign, name) for name in differing},
+        attrs={
+            "Conventions": "CF-1.11",
+            "title": f"Outcomes of the collisions of the campaign {campaign.name}",
+            "physics_version": campaign.physics_version,
+            **{name: value for name, value in shared.items() if name not in (*campaign.dims, *differing)},
+        },
+    )
+
+
+def _parameters(campaign: Campaign) -> tuple[dict[str, Scalar], list[str]]:
+    """Parameters all jobs share, and the names of those that are coordinates beside the axes."""
+    tables = [job.parameters for job in campaign.jobs]
+    names = list(dict.fromkeys(name for table in tables for name in table))
+    shared = {name: tables[0][name] for name in names if len({table.get(name, NONE) for table in tables}) == 1}
+    differing = [name for name in names if name not in shared and any(t.get(name, NONE) != NONE for t in tables)]
+    return shared, [name for name in dict.fromkeys((*ALWAYS, *differing)) if name not in campaign.dims]
+
+
+def _axes(campaign: Campaign) -> dict[str, xr.DataArray]:
+    columns = {dim: _column([plain(value) for value in campaign.coords[dim]]) for dim in campaign.dims}
+    return {dim: xr.DataArray(column, dims=dim, attrs=_attributes(dim)) for dim, column in columns.items()}
+
+
+def _parameter(campaign: Campaign, name: str) -> xr.DataArray:
+    column = _column([job.parameters.get(name, NONE) for job in campaign.jobs])
+    return _grid(campaign, column, np.nan if column.dtype.kind == "f" else NONE, _attributes(name))
+
+
+def _numbers(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
+    return {
+        name: _grid(
+            campaign, _column([found.numbers.get(name, NONE) for found in outcomes]), np.nan, variable.attributes()
+        )
+        for name, variable in OUTCOMES.items()
+    }
+
+
+def _texts(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
+    cells = [
+        {"state": found.state, "reason": found.reason, "job": job.id}
+        for job, found in zip(campaign.jobs, outcomes, strict=True)
+    ]
+    empty = {"state": "missing", "reason": "", "job": ""}
+    return {
+        name: _grid(
+            campaign, np.array([cell[name] for cell in cells], dtype=object), empty[name], variable.attributes()
+        )
+        for name, variable in TEXTS.items()
+    }
+
+
+def _grid(campaign: Campaign, column: NDArray[Any], empty: float | str, attributes: dict[str, str]) -> xr.DataArray:
+    """One value per job, each in its cell; `empty` where no job is."""
+    values = np.full(campaign.shape, empty, dtype=column.dtype)
+    for job, value in zip(campaign.jobs, column, strict=True):
+        values[campaign.cell(job)] = value
+    return xr.DataArray(values, dims=campaign.dims, attrs=attributes)
+
+
+def _column(values: Sequence[Scalar]) -> NDArray[Any]:
+    """Numbers as f64 with NaN for none; anything with other texts in it as texts."""
+    if any(isinstance(value, str) and value != NONE for value in values):
+        return np.array([str(value) for value in values], dtype=object)
+    return np.array([np.nan if value == NONE else value for value in values], dtype=np.float64)
+
+
+def _attributes(name: str) -> dict[str, str]:
+    return PARAMETERS.get(name, Variable(name.replace("_", " "), "")).attributes()

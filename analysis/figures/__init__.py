@@ -1,0 +1,1 @@
+"""The figures of a campaign, each drawn from its results data set."""

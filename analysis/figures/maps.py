@@ -1,0 +1,69 @@
+"""Outcomes over velocity and angle as heat maps."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib import pyplot as plt
+from matplotlib.patches import Rectangle
+
+from analysis.figures.style import GREY
+from analysis.tables import series
+
+PANELS = {
+    "mass_ratio": (r"$M_\mathrm{lr}\,/\,M_\mathrm{target}$", 2.0),
+    "b_over_a": ("$b/a$", 1.0),
+    "c_over_a": ("$c/a$", 1.0),
+}
+"""Title and upper end of the colour scale of each map."""
+
+
+def maps(results: xr.Dataset) -> Any:
+    """M_lr/M_target, b/a and c/a, one row of maps per series; means over seeds, missing cells with their state."""
+    groups = list(series(results))
+    tallest, widest = (max(rows[name].nunique() for _, rows in groups) for name in ("velocity", "angle"))
+    size = (3 * max(2.4, 0.42 * widest + 1.0), len(groups) * max(2.2, 0.36 * tallest + 1.0))
+    figure, panels = plt.subplots(len(groups), 3, figsize=size, squeeze=False, layout="constrained")
+    for row, (title, table) in zip(panels, groups, strict=True):
+        for axes, (name, (label, top)) in zip(row, PANELS.items(), strict=True):
+            _map(axes, table, name, top)
+            axes.set_title(label)
+        row[0].set_ylabel(f"{title}\nvelocity at contact [m/s]".strip())
+    for axes in panels[-1]:
+        axes.set_xlabel("impact angle [deg]")
+    return figure
+
+
+def _map(axes: Any, table: pd.DataFrame, name: str, top: float) -> None:
+    values = table.pivot_table(index="velocity", columns="angle", values=name, aggfunc="mean", dropna=False)
+    states = table.pivot_table(index="velocity", columns="angle", values="state", aggfunc=_least_done, dropna=False)
+    states = states.reindex(index=values.index, columns=values.columns)
+    colours = plt.get_cmap("cividis")
+    axes.imshow(values.to_numpy(float), cmap=colours, vmin=0.0, vmax=top, aspect="auto", origin="lower")
+    for (row, column), value in np.ndenumerate(values.to_numpy(float)):
+        if np.isfinite(value):
+            ink = "white" if value < 0.55 * top else "black"
+            axes.text(column, row, f"{value:.2f}", ha="center", va="center", color=ink, fontsize=7.5)
+        else:
+            _missing(axes, column, row, states.iloc[row, column])
+    axes.set_xticks(range(values.shape[1]), [f"{angle:g}" for angle in values.columns])
+    axes.set_yticks(range(values.shape[0]), [f"{velocity:g}" for velocity in values.index])
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+
+
+def _missing(axes: Any, column: int, row: int, state: object) -> None:
+    """A hatched cell with the state of its job; an empty one where the study has no job."""
+    if not isinstance(state, str):
+        return
+    box = Rectangle(
+        (column - 0.5, row - 0.5), 1.0, 1.0, hatch="////", facecolor="white", edgecolor="#cccccc", linewidth=0
+    )
+    axes.add_patch(box)
+    axes.text(column, row, state, ha="center", va="center", color=GREY, fontsize=6, backgroundcolor="white")
+
+
+def _least_done(states: pd.Series) -> str:
+    """The first state that is not done, since a cell without a number has none done."""
+    return next((str(state) for state in states if state != "done"), "done")

@@ -1,0 +1,62 @@
+"""One look for all figures: fonts, sizes, and colours that colour-blind readers can tell apart."""
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib import pyplot as plt
+
+from engine.storage import write_atomically
+
+matplotlib.use("Agg")
+
+BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#666666"
+"""Okabe & Ito (2008)."""
+
+Directories = dict[str, Path]
+"""Job directory of each job id."""
+
+MARKERS = "osD^vP*X"
+
+plt.rcParams.update(
+    {
+        "font.family": "DejaVu Sans",
+        "font.size": 9,
+        "axes.titlesize": 10,
+        "axes.labelsize": 9,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.linewidth": 0.8,
+        "axes.edgecolor": "#333333",
+        "axes.grid": False,
+        "xtick.labelsize": 8,
+        "ytick.labelsize": 8,
+        "legend.fontsize": 8,
+        "legend.frameon": False,
+        "lines.linewidth": 1.4,
+        "lines.markersize": 5.5,
+        "figure.dpi": 150,
+        "savefig.dpi": 150,
+        "hatch.linewidth": 0.5,
+    }
+)
+
+
+def velocity_colours(velocities: Any) -> dict[float, Any]:
+    """A colour for each velocity, dark for slow and light for fast."""
+    levels = sorted({float(velocity) for velocity in velocities})
+    return dict(zip(levels, plt.get_cmap("viridis")(np.linspace(0.0, 0.88, len(levels))), strict=True))
+
+
+def nothing_done() -> Any:
+    """A figure that says why it shows nothing."""
+    figure = plt.figure(figsize=(6.0, 2.0))
+    figure.text(0.5, 0.5, "no job of this campaign is done yet", ha="center", va="center", color=GREY, fontsize=11)
+    return figure
+
+
+def save(figure: Any, path: Path) -> None:
+    """Write a figure as PNG and release it."""
+    write_atomically(path, lambda partial: figure.savefig(partial, format="png", bbox_inches="tight", pad_inches=0.12))
+    plt.close(figure)

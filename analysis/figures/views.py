@@ -1,0 +1,63 @@
+"""The largest remnants of jobs in their principal axes, as pictures of one scale."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from analysis.clumps import largest_clump
+from analysis.figures.surface import Picture, picture
+from analysis.particles import Particles, read_particles
+from analysis.shape import ellipsoid_of
+
+PIXELS = 360
+"""Pixels across the longest remnant."""
+
+
+@dataclass(frozen=True)
+class Views:
+    """A remnant seen along its shortest axis, and edge-on along its intermediate one; the longest axis to the right."""
+
+    flat: Picture
+    edge: Picture
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What holds any of the pictures: half the width, and half the height of each view [m]."""
+
+    width: float
+    flat: float
+    edge: float
+
+
+def views_of(finals: list[Path]) -> list[Views]:
+    """Both views of the largest remnant in each particle file, all with the same pixel size.
+
+    Raises:
+        JobError, RunFault: as `read_particles`.
+    """
+    remnants = [_aligned(largest_clump(read_particles(path))) for path in finals]
+    longest = max(float(np.ptp(remnant.position[:, 0])) + remnant.spacing for remnant in remnants)
+    return [_views(remnant, longest / PIXELS) for remnant in remnants]
+
+
+def frame_around(views: list[Views]) -> Frame:
+    """The smallest frame around all pictures."""
+    flat = np.abs([found.flat.extent for found in views]).max(axis=0)
+    edge = np.abs([found.edge.extent for found in views]).max(axis=0)
+    return Frame(float(flat[:2].max()), float(flat[2:].max()), float(edge[2:].max()))
+
+
+def _aligned(remnant: Particles) -> Particles:
+    """The remnant with its longest, intermediate and shortest axis along x, y and z."""
+    centre = np.average(remnant.position, axis=0, weights=remnant.mass)
+    directions = ellipsoid_of(remnant.position, remnant.mass).directions
+    return replace(remnant, position=np.einsum("pi,ai->pa", remnant.position - centre, directions))
+
+
+def _views(remnant: Particles, pixel: float) -> Views:
+    along, across, up = remnant.position.T
+    flat = np.stack([along, across, up], axis=1)
+    edge = np.stack([along, up, -across], axis=1)
+    return Views(*(picture(view, remnant.body, remnant.spacing, pixel) for view in (flat, edge)))

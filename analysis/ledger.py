@@ -1,0 +1,70 @@
+"""What a run conserved: the drift of each conserved quantity over its history."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from engine.errors import JobError
+from engine.scene import Body, Scene
+from engine.storage import read_dataset
+
+NEGLIGIBLE = 1e-6
+"""An initial angular momentum below this share of sum m |x| |v| is none: a head-on impact."""
+
+QUANTITIES = ("mass", "momentum", "angular_momentum", "kinetic_energy", "total_energy")
+
+
+def read_history(path: Path) -> xr.Dataset:
+    """The history of a run.
+
+    Raises:
+        JobError: the file is missing, damaged, empty, or lacks a quantity.
+    """
+    history = read_dataset(path)
+    missing = [name for name in ("time", *QUANTITIES) if name not in history.variables]
+    if missing or not history.sizes["time"]:
+        raise JobError(f"{path}: not a history: lacks {', '.join(missing) or 'any row'}")
+    return history
+
+
+def drifts(history: xr.Dataset, scene: Scene) -> xr.Dataset:
+    """Relative change since the start of mass, momentum, angular_momentum and energy [-], over `time` [s].
+
+    Mass is relative to its start; momentum to sum m |v| and angular momentum to |L| of the bodies at the start
+    (NaN without any); energy to the kinetic energy at the start. Vectors give the magnitude of their change.
+    """
+    start = history.isel(time=0)
+    change = history[list(QUANTITIES)] - start[list(QUANTITIES)]
+    momentum, angular_momentum = _scales(scene)
+    return xr.Dataset(
+        {
+            "mass": change["mass"] / _scale(float(start["mass"])),
+            "momentum": _magnitude(change["momentum"]) / _scale(momentum),
+            "angular_momentum": _magnitude(change["angular_momentum"]) / _scale(angular_momentum),
+            "energy": change["total_energy"] / _scale(float(start["kinetic_energy"])),
+        }
+    )
+
+
+def _scales(scene: Scene) -> tuple[float, float]:
+    """sum m |v| [kg m/s] and |sum L| [kg m^2/s] of the bodies; the latter 0 when negligible."""
+    momentum = sum(body.mass * float(np.linalg.norm(body.velocity)) for body in scene.bodies)
+    total = float(np.linalg.norm(sum((_angular_momentum(body) for body in scene.bodies), np.zeros(3))))
+    largest = sum(
+        body.mass * float(np.linalg.norm(body.position) * np.linalg.norm(body.velocity)) for body in scene.bodies
+    )
+    return momentum, total if total > NEGLIGIBLE * largest else 0.0
+
+
+def _angular_momentum(body: Body) -> np.ndarray:
+    orbital = np.cross(body.position, body.velocity)
+    return np.asarray(body.mass * (orbital + 0.4 * body.radius**2 * np.array(body.spin)))
+
+
+def _magnitude(vector: xr.DataArray) -> xr.DataArray:
+    return (vector**2).sum("space", skipna=False) ** 0.5
+
+
+def _scale(value: float) -> float:
+    return value if value > 0.0 else float("nan")

@@ -1,0 +1,100 @@
+"""The particles of a job at one time, read from final.nc or a snapshot."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from engine.errors import JobError, RunFault
+from engine.jobdir import JobDirectory
+from engine.storage import is_finite, read_dataset
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+VECTORS = ("position", "velocity")
+SCALARS = ("mass", "J", "damage")
+
+
+@dataclass(frozen=True)
+class Particles:
+    """State of all particles, or of a selection of them.
+
+    Attributes:
+        position: [m], shape [particle_count, 3].
+        velocity: [m/s], shape [particle_count, 3].
+        mass: [kg], shape [particle_count].
+        J: det F = rho0/rho [-], shape [particle_count].
+        damage: [-], shape [particle_count].
+        body: index of the body in the scene, shape [particle_count].
+        spacing: particle spacing h [m].
+        time: simulated time after contact [s].
+        physics_version: of the engine that made them.
+    """
+
+    position: Array
+    velocity: Array
+    mass: Array
+    J: Array
+    damage: Array
+    body: Integers
+    spacing: float
+    time: float
+    physics_version: int
+
+    def select(self, chosen: NDArray[np.bool_]) -> "Particles":
+        """The particles where `chosen`, shape [particle_count], holds."""
+        return replace(self, **{name: getattr(self, name)[chosen] for name in (*VECTORS, *SCALARS, "body")})
+
+
+def read_particles(path: Path) -> Particles:
+    """The particles in a final.nc or snapshot file.
+
+    Raises:
+        JobError: the file is missing, damaged, holds no particles, or lacks a variable.
+        RunFault: a value is not finite.
+    """
+    dataset = read_dataset(path)
+    try:
+        particles = _particles(dataset)
+    except (KeyError, ValueError, TypeError) as error:
+        raise JobError(f"{path}: not a file of particles: {error}") from error
+    if not is_finite(dataset):
+        raise RunFault(f"{path}: holds values that are not finite")
+    return particles
+
+
+def _particles(dataset: xr.Dataset) -> Particles:
+    if not dataset.sizes["particle"]:
+        raise ValueError("it holds no particle")
+    return Particles(
+        **{name: _values(dataset[name], "particle", "space") for name in VECTORS},
+        **{name: _values(dataset[name], "particle") for name in SCALARS},
+        body=_values(dataset["body"], "particle").astype(np.int64),
+        spacing=float(dataset.attrs["spacing"]),
+        time=float(dataset.attrs["time"]),
+        physics_version=int(dataset.attrs["physics_version"]),
+    )
+
+
+def _values(variable: xr.DataArray, *dims: str) -> Array:
+    return variable.transpose(*dims).to_numpy().astype(np.float64)
+
+
+def snapshots(job: JobDirectory) -> list[tuple[float, Path]]:
+    """Time [s] and file of every snapshot, in order of time.
+
+    Raises:
+        JobError: a snapshot cannot be read.
+    """
+    return sorted((_time(path), path) for path in job.snapshots.glob("*.nc"))
+
+
+def _time(path: Path) -> float:
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            return float(dataset.attrs["time"])
+    except (OSError, KeyError, ValueError, RuntimeError) as error:
+        raise JobError(f"{path}: not a snapshot: {error}") from error

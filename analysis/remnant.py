@@ -1,0 +1,141 @@
+"""One job in, its outcome as a flat set of numbers out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.clumps import as_points, bound_to_largest, clumps_of
+from analysis.hull import hull_of
+from analysis.ledger import drifts, read_history
+from analysis.particles import Particles, read_particles, snapshots
+from analysis.settling import is_settled, shape_change
+from analysis.shape import THIN, bulk_density, ellipsoid_of
+from analysis.spin import spin_period
+from analysis.variables import DAMAGED
+from engine.errors import JobError, RunFault
+from engine.jobdir import JobDirectory
+from engine.scene import scene_in
+
+Numbers = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one job.
+
+    Attributes:
+        state: as in `Status`, or `corrupt`.
+        reason: one line on why there are no numbers, empty otherwise.
+        numbers: the variables of `analysis.variables.OUTCOMES` of a job that is done, none of any other.
+    """
+
+    state: str
+    reason: str
+    numbers: Numbers
+
+
+def outcome(job: JobDirectory, physics_version: int) -> Outcome:
+    """The outcome of a job; a damaged one is `corrupt` and never raises.
+
+    Args:
+        job: the job directory.
+        physics_version: a job computed with any other is corrupt.
+    """
+    try:
+        status = job.status()
+        if status.state != "done":
+            return Outcome(str(status.state), _line(status.reason), {})
+        particles = read_particles(job.final)
+        if particles.physics_version != physics_version:
+            raise JobError(f"computed with physics version {particles.physics_version}, not {physics_version}")
+        return Outcome("done", "", measure(job, particles))
+    except RunFault as fault:
+        return Outcome("failed", _line(fault), {})
+    except Exception as error:  # whatever is wrong with one job must not hide the others
+        return Outcome("corrupt", _line(error), {})
+
+
+def latest(job: JobDirectory) -> Particles:
+    """The particles at the end, or in the last snapshot of a job that is not there yet.
+
+    Raises:
+        JobError: the job has neither, or it cannot be read.
+        RunFault: a value is not finite.
+    """
+    if job.final.is_file():
+        return read_particles(job.final)
+    taken = snapshots(job)
+    if not taken:
+        raise JobError(f"{job.path}: holds neither final.nc nor a snapshot; run the job first")
+    return read_particles(taken[-1][1])
+
+
+def measure(job: JobDirectory, particles: Particles) -> Numbers:
+    """Every variable of `analysis.variables.OUTCOMES`.
+
+    Args:
+        job: the job directory, for its scene, history and snapshots.
+        particles: its final state, or an earlier one.
+
+    Raises:
+        JobError, SceneError: a file of the job cannot be read.
+    """
+    scene, status = scene_in(job.path), job.status()
+    labels = clumps_of(particles)
+    remnant = particles.select(labels == 0)
+    change = shape_change(remnant, job)
+    last = drifts(read_history(job.history), scene).isel(time=-1)
+    return (
+        _masses(particles, labels, scene.bodies[0].mass)
+        | _ellipsoid(remnant)
+        | _hull(remnant)
+        | _interior(remnant)
+        | {"time_after_contact": particles.time, "shape_change": change, "settled": is_settled(change)}
+        | {f"drift_{name}": float(value) for name, value in last.data_vars.items()}
+        | {"steps": float(status.step), "wall_time": float(status.wall_time)}
+    )
+
+
+def _masses(particles: Particles, labels: np.ndarray, target: float) -> Numbers:
+    clumps = as_points(labels, particles.mass, particles.position, particles.velocity)
+    bound = clumps.mass[bound_to_largest(clumps)].sum()
+    return {
+        "mass_ratio": float(clumps.mass[0] / target),
+        "second_mass_ratio": float(clumps.mass[1:2].sum() / target),
+        "bound_mass_ratio": float(bound / target),
+        "clumps": float(len(clumps.mass)),
+    }
+
+
+def _ellipsoid(remnant: Particles) -> Numbers:
+    shape = ellipsoid_of(remnant.position, remnant.mass)
+    extended = ellipsoid_of(remnant.position, remnant.mass, remnant.spacing)
+    return {
+        "b_over_a": shape.b_over_a,
+        "c_over_a": shape.c_over_a,
+        "c_over_a_extended": extended.c_over_a,
+        **{f"axis_{name}": float(axis) for name, axis in zip("abc", shape.axes, strict=True)},
+        "largest_thin": float(shape.axes[2] < THIN * remnant.spacing),
+        "bulk_density": bulk_density(float(remnant.mass.sum()), shape.volume),
+        "spin_period": spin_period(remnant.position, remnant.velocity, remnant.mass),
+    }
+
+
+def _hull(remnant: Particles) -> Numbers:
+    hull = hull_of(remnant.position)
+    return {
+        "hull_b_over_a": hull.ellipsoid.b_over_a,
+        "hull_c_over_a": hull.ellipsoid.c_over_a,
+        "hull_volume": hull.volume,
+        **{f"box_{name}": float(edge) for name, edge in zip("abc", hull.extents, strict=True)},
+    }
+
+
+def _interior(remnant: Particles) -> Numbers:
+    low, median, high = np.percentile(remnant.J, [5.0, 50.0, 95.0])
+    damaged = remnant.mass[remnant.damage > DAMAGED].sum() / remnant.mass.sum()
+    return {"J_p05": float(low), "J_p50": float(median), "J_p95": float(high), "damaged_fraction": float(damaged)}
+
+
+def _line(text: object) -> str:
+    return " ".join(str(text).split())

@@ -1,0 +1,50 @@
+"""Whether the shape of the largest remnant has come to rest."""
+
+import numpy as np
+
+from analysis.clumps import largest_clump
+from analysis.particles import Particles, read_particles, snapshots
+from analysis.shape import Ellipsoid, ellipsoid_of
+from engine.jobdir import JobDirectory
+
+WINDOW = 0.1
+"""The shape is followed over this last share of the time since contact."""
+
+OLDEST = 0.5
+"""When snapshots are sparse the window grows, up to this share."""
+
+TOLERANCE = 0.02
+"""A shape is settled when b/a and c/a change by less than this, relative, over the window.
+
+A remnant at its greatest stretch stands still for a moment too: it passes as settled when the window is short
+against its oscillation."""
+
+
+def shape_change(remnant: Particles, job: JobDirectory) -> float:
+    """Largest relative difference [-] of b/a and c/a between the remnant and the snapshots of the window.
+
+    Args:
+        remnant: the largest clump at the end.
+        job: where the snapshots are; NaN when none reaches back far enough.
+
+    Raises:
+        JobError: a snapshot cannot be read.
+    """
+    times = np.array([time for time, _ in snapshots(job)])
+    before = times[(times >= (1.0 - OLDEST) * remnant.time) & (times <= (1.0 - WINDOW) * remnant.time)]
+    if not before.size or remnant.time <= 0.0:
+        return float("nan")
+    final = _ratios(ellipsoid_of(remnant.position, remnant.mass))
+    window = [path for time, path in snapshots(job) if before.max() <= time < remnant.time]
+    earlier = [largest_clump(read_particles(path)) for path in window]
+    ratios = np.array([_ratios(ellipsoid_of(clump.position, clump.mass)) for clump in earlier])
+    return float(np.max(np.abs(ratios - final) / final))
+
+
+def is_settled(change: float) -> float:
+    """1 when a shape that changed by `change` is settled, 0 when not, NaN when unknown."""
+    return float(change < TOLERANCE) if np.isfinite(change) else float("nan")
+
+
+def _ratios(shape: Ellipsoid) -> list[float]:
+    return [shape.b_over_a, shape.c_over_a]

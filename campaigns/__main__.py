@@ -1,0 +1,5 @@
+"""`python -m campaigns`."""
+
+from campaigns.app import main
+
+main()

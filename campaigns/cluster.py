@@ -1,0 +1,96 @@
+"""Where jobs run: on this machine, on a running dask scheduler, or on SLURM."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+from dask.distributed import Client, LocalCluster
+from dask.system import CPU_COUNT
+
+from engine.errors import SceneError
+
+CONNECTION_TIMEOUT = 10.0
+"""Time [s] in which a scheduler must answer."""
+
+
+@dataclass(frozen=True)
+class Resources:
+    """What a campaign may use.
+
+    workers: jobs at the same time.
+    threads: CPU threads of one job.
+    scheduler: address of a running dask scheduler; `None` starts a cluster of our own.
+    slurm: let that cluster submit its workers to SLURM.
+    """
+
+    workers: int
+    threads: int
+    scheduler: str | None = None
+    slurm: bool = False
+
+
+def share_cores(unfinished: int, workers: int | None, threads: int | None) -> tuple[int, int]:
+    """Jobs at the same time and threads of each, such that all cores of this machine are used.
+
+    Args:
+        unfinished: jobs left to run.
+        workers: jobs at the same time, if given.
+        threads: threads of one job, if given.
+    """
+    jobs = max(1, min(unfinished, workers or CPU_COUNT))
+    threads = threads or max(1, CPU_COUNT // jobs)
+    return workers or max(1, CPU_COUNT // threads), threads
+
+
+@contextmanager
+def connect(resources: Resources) -> Iterator[Client]:
+    """A client of the cluster that `resources` names.
+
+    Raises:
+        SceneError: the scheduler does not answer, or SLURM support is missing or not set up.
+    """
+    if resources.scheduler:
+        with _client_of(resources.scheduler) as client:
+            yield client
+        return
+    with _slurm(resources) if resources.slurm else _local(resources) as cluster, Client(cluster) as client:
+        yield client
+
+
+def _local(resources: Resources) -> Any:
+    """Worker threads of this process: all they do is wait for the engine's processes."""
+    return LocalCluster(
+        n_workers=1,
+        threads_per_worker=resources.workers,
+        processes=False,
+        memory_limit=0,
+        dashboard_address=None,
+        silence_logs=logging.ERROR,
+    )
+
+
+def _client_of(address: str) -> Client:
+    try:
+        return Client(address, timeout=CONNECTION_TIMEOUT)
+    except (OSError, ValueError) as error:
+        raise SceneError(
+            f"--scheduler {address}: cannot be reached ({error}); start one with 'dask scheduler' "
+            "and workers with 'dask worker', or leave the option out"
+        ) from error
+
+
+def _slurm(resources: Resources) -> Any:
+    """Workers as SLURM jobs with one job of ours at a time; memory, queue and walltime are dask-jobqueue's settings."""
+    try:
+        jobqueue = import_module("dask_jobqueue")
+        cluster = jobqueue.SLURMCluster(cores=1, processes=1, job_cpu=resources.threads)
+    except ImportError as error:
+        raise SceneError("--slurm: needs dask-jobqueue; install it with: pip install -e '.[slurm]'") from error
+    except ValueError as error:
+        reason = " ".join(str(error).split())
+        raise SceneError(f"--slurm: set jobqueue.slurm in ~/.config/dask/jobqueue.yaml: {reason}") from error
+    cluster.adapt(maximum=resources.workers)
+    return cluster

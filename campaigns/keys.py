@@ -1,0 +1,62 @@
+"""Dotted keys: `viscosity.shear` for the table `viscosity = {shear = ...}`."""
+
+from collections.abc import Iterable, Iterator
+from copy import deepcopy
+from functools import reduce
+from typing import Any, get_args
+
+from pydantic import BaseModel
+
+LEADING = ("velocity", "angle")
+"""Keys that come first wherever keys are listed."""
+
+
+def ordered(keys: Iterable[str]) -> list[str]:
+    """The keys with velocity and angle first, the others by name, so that their order in a file has no meaning."""
+    return sorted(keys, key=lambda key: (LEADING.index(key) if key in LEADING else len(LEADING), key))
+
+
+def flatten(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested tables as one table of dotted keys."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, dict) and value:
+            flat |= flatten(value, f"{prefix}{key}.")
+        else:
+            flat[prefix + key] = value
+    return flat
+
+
+def nest(flat: dict[str, Any]) -> dict[str, Any]:
+    """A table of dotted keys as nested tables; a later key wins over an earlier one."""
+    table: dict[str, Any] = {}
+    for key, value in deepcopy(flat).items():
+        *parents, name = key.split(".")
+        node = table
+        for parent in parents:
+            if not isinstance(node.get(parent), dict):
+                node[parent] = {}
+            node = node[parent]
+        node[name] = value
+    return table
+
+
+def value_at(model: BaseModel, key: str) -> Any:
+    """The value that a dotted key leads to."""
+    return reduce(getattr, key.split("."), model)
+
+
+def scalar_keys(model: type[BaseModel], prefix: str = "") -> Iterator[str]:
+    """Dotted keys of all single values of an input model."""
+    for name, field in model.model_fields.items():
+        table = _table_in(field.annotation)
+        if table:
+            yield from scalar_keys(table, f"{prefix}{name}.")
+        else:
+            yield prefix + name
+
+
+def _table_in(annotation: Any) -> type[BaseModel] | None:
+    """The input model in `Model` or `Model | None`."""
+    choices = (annotation, *get_args(annotation))
+    return next((kind for kind in choices if isinstance(kind, type) and issubclass(kind, BaseModel)), None)

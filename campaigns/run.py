@@ -1,0 +1,110 @@
+"""Running a campaign: hand unfinished jobs to the cluster, watch the disk, stop in order."""
+
+import signal
+import time
+from dataclasses import dataclass, field, replace
+
+from dask.distributed import Client, Future
+
+from campaigns.campaign import Campaign
+from campaigns.directory import CampaignDirectory
+from campaigns.display import Show
+from campaigns.job import CLAIMED, Outcome, run_job, signal_jobs
+from campaigns.plan import decide
+from campaigns.state import JobState, states
+
+PERIOD = 1.0
+"""Time [s] between two looks at the disk."""
+STOP_PATIENCE = 30.0
+"""Time [s] engines get to write their checkpoint before they are killed."""
+
+
+@dataclass
+class Run:
+    """One attempt at every unfinished job of a campaign.
+
+    directory, campaign: what is run.
+    client: the cluster that runs it.
+    threads: CPU threads of one job.
+    arch: Taichi architecture.
+    retry_failed: run failed jobs once more.
+    """
+
+    directory: CampaignDirectory
+    campaign: Campaign
+    client: Client
+    threads: int
+    arch: str
+    retry_failed: bool
+    _futures: dict[str, Future] = field(default_factory=dict)
+    _outcomes: dict[str, Outcome] = field(default_factory=dict)
+
+    def watch(self, show: Show) -> list[JobState]:
+        """Run until no job is left to run and none is being run by another process; how they stand then.
+
+        A job is tried once; one that another process gives up is taken over.
+
+        Raises:
+            KeyboardInterrupt: the user stopped the campaign; the engines have ended.
+        """
+        try:
+            while True:
+                jobs = self._look()
+                show(jobs)
+                if not self._futures and not any(job.status.state == "running" for job in jobs):
+                    return jobs
+                time.sleep(PERIOD)
+        except BaseException:
+            self._stop()
+            raise
+
+    def _look(self) -> list[JobState]:
+        """Take in what ended, then read the disk, then hand out what is left."""
+        self._harvest()
+        jobs = states(self.directory, self.campaign)
+        for job in jobs:
+            self._submit(job)
+        return [self._explained(job) for job in jobs]
+
+    def _submit(self, job: JobState) -> None:
+        untried = job.id not in self._futures and job.id not in self._outcomes
+        if untried and decide(job.status, self.retry_failed).runs:
+            self._futures[job.id] = self.client.submit(
+                run_job, job.directory, self.threads, self.arch, self.retry_failed, pure=False
+            )
+
+    def _harvest(self) -> None:
+        for name in [name for name, future in self._futures.items() if future.done()]:
+            outcome = _outcome(self._futures.pop(name))
+            if outcome.code != CLAIMED:
+                self._outcomes[name] = outcome
+
+    def _explained(self, job: JobState) -> JobState:
+        """The job with the reason its process gave, where the disk holds none."""
+        outcome = self._outcomes.get(job.id)
+        if outcome is None or job.status.state in ("done", "running") or job.status.reason:
+            return job
+        return replace(job, status=replace(job.status, reason=outcome.reason))
+
+    def _stop(self) -> None:
+        """End the engines so that each can write its checkpoint."""
+        paths = [self.directory.path / "jobs" / name for name in self._futures]
+        self.client.cancel(list(self._futures.values()))
+        self.client.run(signal_jobs, paths, signal.SIGTERM)
+        deadline = time.monotonic() + STOP_PATIENCE
+        while any(self.client.run(signal_jobs, paths, 0).values()):
+            time.sleep(0.2)
+            if time.monotonic() > deadline:
+                self.client.run(signal_jobs, paths, signal.SIGKILL)
+
+
+def _outcome(future: Future) -> Outcome:
+    """How a task ended that the cluster is done with."""
+    match future.status:
+        case "finished":
+            outcome: Outcome = future.result()
+            return outcome
+        case "error":
+            return Outcome(1, f"could not be run: {future.exception()}")
+        case _:
+            return Outcome(1, f"could not be run: {future.status} by the cluster")

@@ -1,0 +1,61 @@
+"""How each job stands, read from its directory; a damaged directory is a state like any other."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from pydantic import TypeAdapter
+
+from campaigns.alias import belongs_to
+from campaigns.campaign import Campaign
+from campaigns.directory import CampaignDirectory
+from engine.errors import JobError
+from engine.jobdir import STATES, JobDirectory, Status
+
+CORRUPT = "corrupt"
+"""State of a job whose directory contradicts itself."""
+ALL_STATES = (*STATES, CORRUPT)
+
+_STATUS = TypeAdapter(Status)
+
+
+@dataclass(frozen=True)
+class JobState:
+    """One job directory and how far it is."""
+
+    directory: Path
+    status: Status
+
+    @property
+    def id(self) -> str:
+        """The job's id, the name of its directory."""
+        return self.directory.name
+
+
+def states(directory: CampaignDirectory, campaign: Campaign) -> list[JobState]:
+    """How all jobs of a campaign stand now."""
+    paths = [directory.path / job.directory for job in campaign.jobs]
+    return [JobState(path, status_of(path)) for path in paths]
+
+
+def status_of(job_directory: Path) -> Status:
+    """How one job stands now; `corrupt`, with the reason, when that cannot be told."""
+    try:
+        _require_own_scene(job_directory)
+        return _sound_status(JobDirectory(job_directory))
+    except (JobError, OSError, ValueError, TypeError, ArithmeticError) as error:
+        return Status(state=CORRUPT, reason=" ".join(str(error).split()))
+
+
+def _require_own_scene(job_directory: Path) -> None:
+    path = job_directory / "scene.json"
+    if path.is_file() and not belongs_to(job_directory.name, path.read_bytes()):
+        raise JobError(f"{path}: is not the scene this job was made for")
+
+
+def _sound_status(job: JobDirectory) -> Status:
+    status = _STATUS.validate_python(asdict(job.status()))
+    if status.state not in STATES:
+        raise JobError(f"{job.status_file}: unknown state '{status.state}'")
+    if status.state == "done" and not job.final.is_file():
+        raise JobError(f"{job.final}: missing, though status.json says done")
+    return status

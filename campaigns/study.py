@@ -1,0 +1,74 @@
+"""A study: the settings its collisions share, and in what they differ."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from campaigns.keys import flatten, nest
+from engine.collision import Collision
+from engine.errors import SceneError
+from engine.validation import Frozen, read_table, suggestion, validate
+
+SHIPPED = Path(__file__).parent / "studies"
+
+
+class Study(Frozen):
+    """What a study file holds.
+
+    name: name of the study and of its results directory.
+    collision: settings of all collisions, keys as in engine.collision.Collision.
+    axes: dotted key of the collision -> its values; every combination is a job.
+    cases: one table of settings for each job, where the jobs are no grid.
+    """
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)]
+    description: str = ""
+    collision: Annotated[dict[str, Any], Field(default_factory=dict)]
+    axes: dict[str, Any] | None = None
+    cases: list[dict[str, Any]] | None = None
+
+    def collision_with(self, changes: dict[str, Any], source: str) -> Collision:
+        """The collision of one job.
+
+        Args:
+            changes: dotted keys and values that replace those of the study.
+            source: the origin that errors name.
+
+        Raises:
+            SceneError: the settings are no collision.
+        """
+        return validate(Collision, nest(flatten(self.collision) | changes), source)
+
+    def shared_settings(self, source: str) -> dict[str, Any]:
+        """The settings of all jobs by dotted key, defaults included; velocity 1 and angle 0 where none is shared.
+
+        Raises:
+            SceneError: the settings are no collision.
+        """
+        required = {"velocity": 1.0, "angle": 0.0}
+        shared = validate(Collision, nest(required | flatten(self.collision)), source)
+        return flatten(shared.model_dump(mode="json"))
+
+
+def find_study(name: str) -> Path:
+    """The file of a study given by its shipped name or by a path.
+
+    Raises:
+        SceneError: there is no such study.
+    """
+    names = sorted(path.stem for path in SHIPPED.glob("*.toml"))
+    if name in names:
+        return SHIPPED / f"{name}.toml"
+    if Path(name).exists():
+        return Path(name)
+    raise SceneError(f"no study '{name}': neither a file nor a shipped study{suggestion(name, names)}")
+
+
+def read_study(path: Path) -> Study:
+    """The study in a TOML file.
+
+    Raises:
+        SceneError: the file cannot be read or its content is not a study.
+    """
+    return validate(Study, read_table(path), str(path))

@@ -1,0 +1,88 @@
+"""The one place that imports, starts and configures Taichi."""
+
+import os
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
+
+import taichi as ti
+from taichi.lang import impl
+
+Real = ti.f64
+"""Precision of every field and literal."""
+
+vec3 = ti.types.vector(3, Real)
+vec4 = ti.types.vector(4, Real)
+vec6 = ti.types.vector(6, Real)
+mat3 = ti.types.matrix(3, 3, Real)
+
+TASK = 512
+"""Iterations of a CPU loop that Taichi gives to one thread at a time, whatever the loop asks for.
+
+A loop over few, long items runs over TASK times their number and works in every TASK-th iteration.
+"""
+
+STALE_LOCK_AGE = 60.0
+"""Age [s] at which a lock on the kernel cache was left by a killed process: Taichi would then never cache again."""
+
+
+def start(arch: str = "cpu", threads: int | None = None) -> None:
+    """Start Taichi in this process, ending every earlier program in it.
+
+    Args:
+        arch: `cpu` or `cuda`.
+        threads: CPU threads; all cores if `None`.
+
+    Raises:
+        RuntimeError: the asked device is not available.
+    """
+    cache = _cache_directory()
+    ti.init(
+        arch={"cpu": ti.cpu, "cuda": ti.cuda}[arch],
+        default_fp=Real,
+        default_ip=ti.i32,
+        fast_math=False,
+        cpu_max_num_threads=threads or os.cpu_count() or 1,
+        offline_cache=True,
+        offline_cache_file_path=str(cache),
+        enable_fallback=False,
+        log_level=ti.ERROR,
+    )
+
+
+def on_gpu() -> bool:
+    """Whether the running program works on a GPU."""
+    return bool(impl.current_cfg().arch != ti.cpu)
+
+
+def capacity(count: int) -> int:
+    """Size of a field for `count` entries: few sizes, so that scenes of many sizes share compiled kernels."""
+    return max(1024, 1 << (count - 1).bit_length())
+
+
+def filled(dtype: Any, values: NDArray[Any]) -> ti.Field:
+    """A one-dimensional field that begins with `values`; the rest is zero."""
+    field = ti.field(dtype, shape=capacity(len(values)))
+    overwrite(field, values)
+    return field
+
+
+def overwrite(field: Any, values: NDArray[Any]) -> None:
+    """Fill the first entries of a field with `values`, and the rest with zeros."""
+    padded = np.zeros((field.shape[0], *values.shape[1:]), dtype=values.dtype)
+    padded[: len(values)] = values
+    field.from_numpy(padded)
+
+
+def _cache_directory() -> Path:
+    root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    cache = root / "asteroid-collisions" / "kernels"
+    for lock in cache.glob("**/*.lock"):
+        if time.time() - lock.stat().st_mtime > STALE_LOCK_AGE:
+            lock.unlink(missing_ok=True)
+    return cache

@@ -1,0 +1,101 @@
+"""Which blocks of the unbounded grid hold particles, and which blocks share nodes.
+
+A block owns the particles whose lowest node lies in its 4x4x4 cells, and a private copy of the 8x8x8 nodes they may
+touch until one of them has moved a whole cell beyond the block. Copies of neighbouring blocks overlap: the nodes of
+every 4x4x4 `tile` lie in the copies of up to eight blocks. All of this is rebuilt on the host, only when a particle
+has used up that margin.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.errors import RunFault
+
+EDGE = 4
+"""Cells along an edge of a block, and nodes along an edge of a tile."""
+
+HALF_RANGE = 1 << 20
+"""Blocks per axis on either side of the origin."""
+
+Integers = NDArray[np.integer]
+
+CORNERS = np.array(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij")).reshape(3, 8).T
+NEIGHBOURS = np.array(np.meshgrid([-1, 0, 1], [-1, 0, 1], [-1, 0, 1], indexing="ij")).reshape(3, 27).T
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Occupied blocks and their overlaps.
+
+    Attributes:
+        origin: block coordinates, shape [block_count, 3].
+        first: range of each block in `order`, shape [block_count + 1].
+        order: particles by block, then by index; those that are alone come last, shape [particle_count].
+        source: for every tile the eight blocks whose copies hold it, at offsets `CORNERS`, or -1; shape [tile_count, 8].
+    """
+
+    origin: Integers
+    first: Integers
+    order: Integers
+    source: Integers
+
+
+def block_of(x: NDArray[np.floating], dx: float) -> Integers:
+    """Coordinates of the block that owns each particle.
+
+    Args:
+        x: positions [m], shape [particle_count, 3].
+        dx: grid spacing [m].
+
+    Raises:
+        RunFault: a particle is beyond the range of block coordinates.
+    """
+    block = np.floor((x / dx - 0.5) / EDGE)
+    far = ~(np.abs(block) < HALF_RANGE - 2).all(axis=1)
+    if far.any():
+        particle = int(np.argmax(far))
+        raise RunFault(f"position of particle {particle} is {x[particle]} m: not finite, or beyond the grid's range")
+    return block.astype(np.int32)
+
+
+def build_blocks(block: Integers) -> Blocks:
+    """Blocks, order and overlaps from the block of each particle.
+
+    Args:
+        block: block coordinates, shape [particle_count, 3].
+    """
+    keys, inverse, counts = np.unique(_key(block), return_inverse=True, return_counts=True)
+    alone = (counts == 1) & (_neighbour_count(keys) == 1)
+    rank = np.where(alone, len(keys), np.arange(len(keys)))[inverse]
+    order = np.argsort(rank, kind="stable").astype(np.int32)
+    shared = keys[~alone]
+    first = np.concatenate([[0], np.cumsum(counts[~alone])]).astype(np.int32)
+    return Blocks(_coordinates(shared), first, order, _sources(shared))
+
+
+def _key(block: Integers) -> Integers:
+    shifted = block.astype(np.int64) + HALF_RANGE
+    return np.asarray((shifted[..., 0] << 42) | (shifted[..., 1] << 21) | shifted[..., 2])
+
+
+def _coordinates(keys: Integers) -> Integers:
+    mask = (1 << 21) - 1
+    axes = [keys >> 42, (keys >> 21) & mask, keys & mask]
+    return (np.stack(axes, axis=-1) - HALF_RANGE).astype(np.int32)
+
+
+def _neighbour_count(keys: Integers) -> Integers:
+    """Number of occupied blocks among the 27 around each block, itself included."""
+    around = _key(_coordinates(keys)[:, None, :] + NEIGHBOURS)
+    return np.isin(around, keys).sum(axis=1)
+
+
+def _sources(keys: Integers) -> Integers:
+    """The eight blocks over each tile that any block touches."""
+    tiles = _coordinates(np.unique(_key(_coordinates(keys)[:, None, :] + CORNERS)))
+    owners = _key(tiles[:, None, :] - CORNERS)
+    index = np.searchsorted(keys, owners)
+    found = np.isin(owners, keys)
+    return np.where(found, index, -1).astype(np.int32)

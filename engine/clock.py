@@ -1,0 +1,57 @@
+"""Time, time step and the reasons to pause, kept on the device so that steps need no answer from the host."""
+
+import taichi as ti
+
+from engine.backend import Real
+
+FAULT_NONE = 0
+FAULT_INVERTED = 1
+
+
+@ti.data_oriented
+class Clock:
+    """Chooses every time step from the fastest rate that the step before reported.
+
+    A step that must not run (`pause_time` reached, a particle out of its block, a fault) does nothing, so the host may
+    launch more steps than will run: results never depend on how many.
+
+    Args:
+        start: first simulated time [s].
+        end: last simulated time [s]; the last step ends on it exactly.
+        longest_step: upper bound of the time step [s].
+    """
+
+    def __init__(self, start: float, end: float, longest_step: float) -> None:
+        self.time, self.end, self.pause_time = (ti.field(ti.f64, ()) for _ in range(3))
+        self.dt, self.rate, self.least_rate, self.damping = (ti.field(Real, ()) for _ in range(4))
+        self.step, self.running, self.moved_out, self.fault, self.fault_particle = (ti.field(ti.i32, ()) for _ in range(5))
+        self.fracturing = ti.field(ti.i32, ())
+        self.time[None], self.end[None], self.pause_time[None] = start, end, start
+        self.least_rate[None] = 1.0 / longest_step
+        self.fracturing[None] = 1
+
+    @ti.func
+    def begin_step(self):
+        """Decide whether this step runs, and how long it is."""
+        self.running[None] = 0
+        if self.time[None] < self.pause_time[None] and self.moved_out[None] == 0 and self.fault[None] == FAULT_NONE:
+            self.running[None] = 1
+            left = self.end[None] - self.time[None]
+            dt = 1.0 / ti.max(self.rate[None], self.least_rate[None])
+            self.dt[None] = ti.min(dt, left)
+            self.time[None] += self.dt[None]
+            if dt >= left:
+                self.time[None] = self.end[None]
+            self.step[None] += 1
+            self.rate[None] = 0.0
+
+    @ti.func
+    def report_rate(self, rate):
+        """Take note of an inverse time step [1/s] that this step demands of the next."""
+        ti.atomic_max(self.rate[None], rate)
+
+    @ti.func
+    def report_fault(self, fault, p):
+        """Stop the run because of particle p; the lowest index is kept."""
+        self.fault[None] = fault
+        ti.atomic_min(self.fault_particle[None], p)

@@ -1,0 +1,51 @@
+"""Weibull flaws: at which strain each crack in a body becomes active (engine/physics.md, section 5)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.materials import Fracture
+from engine.scene import Body
+
+
+@dataclass(frozen=True)
+class Flaws:
+    """Activation strains of all flaws, sorted within each particle.
+
+    Attributes:
+        first: index of each particle's first flaw and, last, their number; shape [particle_count + 1].
+        strain: activation strain [-], shape [flaw_count].
+    """
+
+    first: NDArray[np.int32]
+    strain: NDArray[np.float64]
+
+
+def draw_flaws(body: Body, fracture: Fracture, generator: np.random.Generator) -> Flaws:
+    """Flaws of one body, the weakest first, each given to a random particle."""
+    owner = _owners(body.particles, fracture, generator)
+    number = np.arange(1, len(owner) + 1)
+    material = body.material
+    strain = (number / (material.weibull_k * body.volume)) ** (1.0 / material.weibull_m)
+    order = np.argsort(owner, kind="stable")
+    first = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=body.particles))])
+    return Flaws(first.astype(np.int32), strain[order])
+
+
+def _owners(particles: int, fracture: Fracture, generator: np.random.Generator) -> NDArray[np.int64]:
+    """The particle that each flaw falls on."""
+    if fracture.flaws == "2NlnN":
+        return generator.integers(particles, size=round(2.0 * particles * np.log(particles)))
+    owners = generator.integers(particles, size=particles)
+    while len(np.unique(owners)) < particles:
+        owners = np.concatenate([owners, generator.integers(particles, size=particles)])
+    _, first_use = np.unique(owners, return_index=True)
+    return owners[: first_use.max() + 1]
+
+
+def join(flaws: list[Flaws]) -> Flaws:
+    """The flaws of several bodies as one list, particles in the order of the bodies."""
+    offsets = np.cumsum([0] + [len(part.strain) for part in flaws])
+    first = [part.first[:-1] + offset for part, offset in zip(flaws, offsets, strict=False)]
+    return Flaws(np.concatenate([*first, offsets[-1:]]).astype(np.int32), np.concatenate([p.strain for p in flaws]))

@@ -1,0 +1,78 @@
+"""Growth of damage from active flaws (engine/physics.md, section 5; Grady & Kipp 1980, Benz & Asphaug 1994)."""
+
+from collections.abc import Sequence
+
+import taichi as ti
+
+from engine import materials
+from engine.backend import Real, filled
+from engine.flaws import Flaws
+from engine.scene import Body
+from engine.tensors import largest_eigenvalue
+
+
+@ti.data_oriented
+class Fracture:
+    """Damage of one particle from its tensile strain and its flaws.
+
+    Args:
+        bodies: bodies of the scene, in order.
+        rule: rules of the parameter set.
+        flaws: activation strains of every particle.
+    """
+
+    def __init__(self, bodies: Sequence[Body], rule: materials.Fracture, flaws: Flaws) -> None:
+        self.per_flaw = rule.per_flaw
+        self.table = ti.types.struct(modulus=Real, rate=Real).field(shape=len(bodies))
+        for i, body in enumerate(bodies):
+            self.table.modulus[i] = _strain_modulus(rule, body.material)
+            crack_speed = rule.growth_speed * body.material.longitudinal_speed
+            self.table.rate[i] = crack_speed / (rule.growth_range * body.spacing)
+        self.first = filled(ti.i32, flaws.first)
+        self.strain = filled(Real, flaws.strain)
+
+    @ti.func
+    def grow(self, root, s, P, dt, p, body):
+        """Cube root of damage after a step.
+
+        Args:
+            root: cube root of the damage before [-].
+            s: deviatoric Cauchy stress [Pa].
+            P: pressure [Pa].
+            dt: time step [s].
+            p: index of the particle.
+            body: index of its body.
+        """
+        m = self.table[body]
+        result = root
+        if root < 1.0:
+            strain = (largest_eigenvalue(s) - P) / m.modulus
+            active, total = self._active(strain, p), self.first[p + 1] - self.first[p]
+            if active > 0:
+                cracks = active if ti.static(self.per_flaw) else 1
+                cap = (ti.cast(active, Real) / total) ** (1.0 / 3.0)
+                result = ti.max(root, ti.min(root + cracks * m.rate * dt, cap))
+        return result
+
+    @ti.func
+    def _active(self, strain, p):
+        """Number of the particle's flaws that open at this strain."""
+        flaw, end = self.first[p], self.first[p + 1]
+        while flaw < end and self.strain[flaw] < strain:
+            flaw += 1
+        return flaw - self.first[p]
+
+
+@ti.data_oriented
+class Unbreakable:
+    """Matter that never breaks further."""
+
+    @ti.func
+    def grow(self, root, s, P, dt, p, body):
+        """Damage stays."""
+        return root
+
+
+def _strain_modulus(rule: materials.Fracture, material: materials.Material) -> float:
+    """Modulus [Pa] that turns the largest tensile stress into the local strain."""
+    return material.young_modulus if rule.strain == "young" else material.longitudinal_modulus

@@ -1,0 +1,57 @@
+"""The state at the start: where particles are, how they move, how far gravity has compressed them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.flaws import Flaws, draw_flaws, join
+from engine.orbit import G
+from engine.particles import Arrays
+from engine.scene import Body, Scene
+from engine.sphere import sphere_points
+
+
+def generator(scene: Scene, body: int, purpose: int) -> np.random.Generator:
+    """The source of randomness for one purpose (0 positions, 1 flaws) of one body."""
+    return np.random.default_rng([scene.seed, body, purpose])
+
+
+def initial_state(scene: Scene) -> Arrays:
+    """Every particle field that is not zero at the start, bodies one after the other."""
+    parts = [_body_state(scene, i, body) for i, body in enumerate(scene.bodies)]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def all_flaws(scene: Scene) -> Flaws:
+    """Flaws of all particles; the scene must have fracture."""
+    assert scene.physics.fracture is not None
+    rule = scene.physics.fracture
+    return join([draw_flaws(body, rule, generator(scene, i, 1)) for i, body in enumerate(scene.bodies)])
+
+
+def _body_state(scene: Scene, index: int, body: Body) -> Arrays:
+    points = sphere_points(body.particles, body.radius, generator(scene, index, 0))
+    pressure = _hydrostatic_pressure(body, points) if body.hydrostatic else np.zeros(len(points))
+    mu = pressure / body.material.tillotson.A
+    return {
+        "x": points + np.array(body.position),
+        "v": np.array(body.velocity) + np.cross(np.array(body.spin), points),
+        "C": np.tile(_spin_tensor(body), (body.particles, 1, 1)),
+        "j": -mu / (1.0 + mu),
+        "E": 0.5 * body.material.tillotson.A * mu**2 / body.material.rho0,
+        "tau": np.outer(-pressure / (1.0 + mu), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+        "root": np.full(body.particles, body.damage ** (1.0 / 3.0)),
+        "mass": np.full(body.particles, body.mass / body.particles),
+        "body": np.full(body.particles, index, dtype=np.int32),
+    }
+
+
+def _hydrostatic_pressure(body: Body, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """P(r) = (2/3) pi G rho^2 (R^2 - r^2) [Pa] (engine/physics.md, section 8)."""
+    square = np.einsum("ij,ij->i", points, points)
+    return 2.0 / 3.0 * np.pi * G * body.material.rho0**2 * np.maximum(body.radius**2 - square, 0.0)
+
+
+def _spin_tensor(body: Body) -> NDArray[np.float64]:
+    """Velocity gradient [1/s] of rigid rotation."""
+    x, y, z = body.spin
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

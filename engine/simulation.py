@@ -1,0 +1,140 @@
+"""A scene in motion: assembled from the parts it names, advanced from one pause to the next."""
+
+import math
+
+import numpy as np
+
+from engine.blocks import block_of, build_blocks
+from engine.clock import FAULT_NONE, Clock
+from engine.constitution import Constitution
+from engine.errors import RunFault
+from engine.fracture import Fracture, Unbreakable
+from engine.gravity import DirectSum
+from engine.initial import all_flaws, initial_state
+from engine.particles import Particles
+from engine.scene import Scene
+from engine.strength import Strength, Unlimited
+from engine.tillotson import Tillotson
+from engine.transfer import Transfer
+from engine.viscosity import Inviscid, Viscosity
+
+LAUNCHES = 64
+"""Most steps launched before the host looks whether they ran."""
+
+
+class Simulation:
+    """All parts of a scene on the device, and the events between steps.
+
+    Args:
+        scene: what to simulate; Taichi must have been started.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, physics = scene, scene.physics
+        materials = [body.material for body in scene.bodies]
+        self.particles = Particles(scene.particles)
+        longest = physics.gravity.interval if physics.gravity else scene.end_time - scene.start_time
+        self.clock = Clock(scene.start_time, scene.end_time, longest)
+        self.gravity = DirectSum(self.particles, physics.gravity.softening * scene.spacing) if physics.gravity else None
+        self.constitution = Constitution(
+            self.particles,
+            Tillotson(materials),
+            Strength(materials) if physics.strength else Unlimited(),
+            Fracture(scene.bodies, physics.fracture, all_flaws(scene)) if physics.fracture else Unbreakable(),
+            Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
+            materials,
+            physics.shear,
+        )
+        self._make_room(scene.particles // 8)
+        self.gravity_due = scene.start_time
+        self.gravity_change = 0.0
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return float(self.clock.time[None])
+
+    @property
+    def step(self) -> int:
+        """Time steps done."""
+        return int(self.clock.step[None])
+
+    @property
+    def finished(self) -> bool:
+        """Whether the end time is reached."""
+        return self.time >= self.scene.end_time
+
+    def start(self) -> None:
+        """Put all particles where the scene has them."""
+        self.particles.write(initial_state(self.scene))
+        self.rebuild_blocks()
+        self.clock.rate[None] = self._first_rate()
+
+    def advance(self, until: float) -> None:
+        """Take steps until the first one that reaches `until` [s]; the same steps whatever the pauses between.
+
+        Raises:
+            RunFault: a particle left the range in which the equations hold.
+        """
+        while self.time < until and not self.finished:
+            self._handle_events()
+            self.clock.pause_time[None] = min(until, self.gravity_due)
+            self._launch()
+            self._check_fault()
+
+    def rebuild_blocks(self) -> None:
+        """Sort particles into the blocks they are in now."""
+        x = self.particles.read("x")["x"]
+        self.particles.write({"origin": block_of(x, self.scene.dx)})
+        self.use_stored_blocks()
+
+    def use_stored_blocks(self) -> None:
+        """Build the blocks from where the particles were when blocks were last built."""
+        blocks = build_blocks(self.particles.read("origin")["origin"])
+        if len(blocks.origin) > self.transfer.capacity:
+            self._make_room(2 * len(blocks.origin))
+        self.transfer.use(blocks)
+        self.clock.moved_out[None] = 0
+
+    def _make_room(self, blocks: int) -> None:
+        scene = self.scene
+        self.transfer = Transfer(self.particles, self.constitution, self.clock, scene.dx, scene.numerics.cfl, blocks)
+
+    def _handle_events(self) -> None:
+        if self.clock.moved_out[None]:
+            self.rebuild_blocks()
+        if self.gravity and self.time >= self.gravity_due:
+            self._update_gravity()
+
+    def _update_gravity(self) -> None:
+        assert self.gravity and self.scene.physics.gravity
+        interval = self.scene.physics.gravity.interval
+        before = self.particles.read("acceleration")["acceleration"]
+        self.gravity.accelerate(ahead=0.5 * interval)
+        after = self.particles.read("acceleration")["acceleration"]
+        self.gravity_change = float(np.linalg.norm(after - before) / max(np.linalg.norm(after), 1e-300))
+        self.gravity_due = self.time + interval
+
+    def _launch(self) -> None:
+        left = self.clock.pause_time[None] - self.time
+        rate = max(self.clock.rate[None], self.clock.least_rate[None])
+        for _ in range(min(LAUNCHES, math.ceil(left * rate) + 1)):
+            self.transfer.step()
+
+    def _check_fault(self) -> None:
+        if self.clock.fault[None] != FAULT_NONE:
+            p = int(self.clock.fault_particle[None])
+            state = {name: values[p] for name, values in self.particles.read("x", "v", "j", "E").items()}
+            raise RunFault(
+                f"det F of particle {p} is {1.0 + state['j']:.3g} at t = {self.time:.6g} s, x = {state['x']} m, "
+                f"v = {state['v']} m/s, E = {state['E']:.3g} J/kg: try a smaller numerics.cfl"
+            )
+
+    def _first_rate(self) -> float:
+        """Inverse time step [1/s] that bodies at rest density and full speed demand."""
+        scene = self.scene
+        speed = max(
+            body.material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + float(np.linalg.norm(body.spin)) * body.radius
+            for body in scene.bodies
+        )
+        return speed / (scene.numerics.cfl * scene.dx)

@@ -1,0 +1,61 @@
+"""Pressure-dependent strength and friction as one radial return (engine/physics.md, section 4; Jutzi 2015)."""
+
+from collections.abc import Sequence
+
+import taichi as ti
+
+from engine.backend import Real
+from engine.materials import Material
+
+
+@ti.data_oriented
+class Strength:
+    """Largest shear stress that rock bears, from intact to fully damaged.
+
+    Args:
+        materials: one per body.
+    """
+
+    def __init__(self, materials: Sequence[Material]) -> None:
+        constants = ("cohesion", "intact_friction", "strength_limit", "melt_energy", "damaged_friction")
+        self.table = ti.types.struct(**dict.fromkeys(constants, Real)).field(shape=len(materials))
+        for i, material in enumerate(materials):
+            for name in constants:
+                getattr(self.table, name)[i] = getattr(material, name)
+
+    @ti.func
+    def limit(self, P, E, D, body):
+        """Largest sqrt(J2) [Pa].
+
+        Args:
+            P: pressure [Pa], positive in compression.
+            E: specific internal energy [J/kg].
+            D: damage [-].
+            body: index of the body, which fixes the material.
+        """
+        m = self.table[body]
+        confining = ti.max(P, 0.0)
+        friction = m.intact_friction * confining
+        intact = m.cohesion + friction / (1.0 + friction / (m.strength_limit - m.cohesion))
+        intact *= ti.min(ti.max(1.0 - E / m.melt_energy, 0.0), 1.0)
+        damaged = ti.min(m.damaged_friction * confining, intact)
+        return (1.0 - D) * intact + D * damaged
+
+    @ti.func
+    def retained(self, root_J2, P, E, D, body):
+        """Share of the deviatoric strain that stays elastic: 1 below the limit, Y/sqrt(J2) beyond it."""
+        Y = self.limit(P, E, D, body)
+        share = ti.cast(1.0, Real)
+        if root_J2 > Y:
+            share = Y / root_J2
+        return share
+
+
+@ti.data_oriented
+class Unlimited:
+    """A solid that never yields."""
+
+    @ti.func
+    def retained(self, root_J2, P, E, D, body):
+        """All deviatoric strain stays elastic."""
+        return ti.cast(1.0, Real)

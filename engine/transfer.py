@@ -1,0 +1,247 @@
+"""Momentum from particles to grid and back: quadratic-spline affine MPM (engine/physics.md, section 1; Jiang et al. 2015).
+
+Each block of particles adds to its own copy of the nodes it touches; one pass over the tiles sums the copies in a
+fixed order and writes the common velocity back into each. On the CPU one thread works on one block at a time, so no two
+threads ever add to the same number and results do not depend on their count.
+"""
+
+from typing import Any
+
+import numpy as np
+import taichi as ti
+import taichi.math as tm
+
+from engine.backend import TASK, Real, capacity, mat3, on_gpu, overwrite, vec3, vec4
+from engine.blocks import Blocks
+from engine.clock import FAULT_INVERTED, Clock
+from engine.tensors import identity, norm_squared, symmetric, unpack
+
+SPAN = 8
+"""Nodes along an edge of a block's copy."""
+COPY = SPAN**3
+TILE = 64
+
+LARGEST_INCREMENT = 0.3
+"""Largest deformation |dt L| of one step [-]."""
+
+ALONE = 1e-12
+"""Share of a particle's mass below which the mass of others on its nodes is round-off."""
+
+
+@ti.func
+def spline_weights(f):
+    """Quadratic B-spline weights of three nodes at distance f, in cells, above the lowest; f in [0.5, 1.5)."""
+    return ti.Matrix.cols([0.5 * (1.5 - f) ** 2, 0.75 - (f - 1.0) ** 2, 0.5 * (f - 0.5) ** 2])
+
+
+@ti.data_oriented
+class Transfer:
+    """The kernels of one time step.
+
+    Args:
+        particles: state of the particles.
+        constitution: response of one particle.
+        clock: time and time step.
+        dx: grid spacing [m].
+        cfl: time step in units of the time a wave needs for one cell.
+        blocks: number of blocks to make room for.
+    """
+
+    def __init__(self, particles: Any, constitution: Any, clock: Clock, dx: float, cfl: float, blocks: int) -> None:
+        self.particles, self.constitution, self.clock = particles, constitution, clock
+        self.by_block = not on_gpu()
+        self.capacity = capacity(blocks)
+        self.dx, self.cfl = ti.field(Real, ()), ti.field(Real, ())
+        self.dx[None], self.cfl[None] = dx, cfl
+        self.block_count, self.tile_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
+        self.shared_count, self.alone_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
+        self.order = ti.field(ti.i32, particles.x.shape)
+        self.owner = ti.field(ti.i32, particles.x.shape)
+        self.origin = ti.Vector.field(3, ti.i32, self.capacity)
+        self.first = ti.field(ti.i32, self.capacity + 1)
+        self.source = ti.field(ti.i32, (8 * self.capacity, 8))
+        self.nodes = vec4.field(shape=self.capacity * COPY)
+
+    def use(self, blocks: Blocks) -> None:
+        """Take over newly built blocks; there must be room for them."""
+        shared = int(blocks.first[-1])
+        counts = (self.block_count, self.tile_count, self.shared_count, self.alone_count)
+        sizes = (len(blocks.origin), len(blocks.source), shared, len(blocks.order) - shared)
+        for field, size in zip(counts, sizes, strict=True):
+            field[None] = size
+        owner = np.repeat(np.arange(len(blocks.origin), dtype=np.int32), np.diff(blocks.first))
+        overwrite(self.order, blocks.order)
+        overwrite(self.owner, owner)
+        overwrite(self.origin, blocks.origin)
+        overwrite(self.first, blocks.first)
+        overwrite(self.source, blocks.source)
+
+    def step(self) -> None:
+        """Advance all particles by one time step, unless the clock says to pause."""
+        self.particles_to_grid()
+        self.update_grid()
+        self.grid_to_particles()
+
+    @ti.kernel
+    def particles_to_grid(self):
+        """Mass and momentum, with the momentum that stress adds over the step."""
+        self.clock.begin_step()
+        blocks = self.block_count[None] * self.clock.running[None]
+        if ti.static(self.by_block):
+            for t in range(blocks * TASK):
+                if t % TASK == 0:
+                    self.fill_block(t // TASK)
+        else:
+            for n in range(blocks * COPY):
+                self.nodes[n] = vec4(0.0)
+            for k in range(self.shared_count[None] * self.clock.running[None]):
+                self.scatter(self.order[k], self.owner[k])
+
+    @ti.kernel
+    def update_grid(self):
+        """Sum the copies of every node and turn momentum into velocity."""
+        for n in range(self.tile_count[None] * TILE * self.clock.running[None]):
+            tile = n // TILE
+            inner = (((n >> 4) & 3) * SPAN + ((n >> 2) & 3)) * SPAN + (n & 3)
+            total = vec4(0.0)
+            for corner in range(8):
+                b = self.source[tile, corner]
+                if b >= 0:
+                    total += self.nodes[b * COPY + corner_offset(corner) + inner]
+            if total[3] > 0.0:
+                velocity = vec4(total[0] / total[3], total[1] / total[3], total[2] / total[3], total[3])
+                for corner in range(8):
+                    b = self.source[tile, corner]
+                    if b >= 0:
+                        self.nodes[b * COPY + corner_offset(corner) + inner] = velocity
+
+    @ti.kernel
+    def grid_to_particles(self):
+        """Move and deform every particle with the velocity of its nodes."""
+        if ti.static(self.by_block):
+            for t in range(self.block_count[None] * self.clock.running[None] * TASK):
+                if t % TASK == 0:
+                    self.clock.report_rate(self.empty_block(t // TASK))
+        else:
+            for k in range(self.shared_count[None] * self.clock.running[None]):
+                self.clock.report_rate(self.gather(self.order[k], self.owner[k]))
+        for k in range(self.alone_count[None] * self.clock.running[None]):
+            p = self.order[self.shared_count[None] + k]
+            self.drift(p)
+            self.check_place(p)
+
+    @ti.func
+    def fill_block(self, b):
+        """Collect the particles of block b on its nodes."""
+        for n in range(b * COPY, (b + 1) * COPY):
+            self.nodes[n] = vec4(0.0)
+        for k in range(self.first[b], self.first[b + 1]):
+            self.scatter(self.order[k], b)
+
+    @ti.func
+    def empty_block(self, b):
+        """Advance the particles of block b; returns the inverse time step they allow [1/s]."""
+        rate = ti.cast(0.0, Real)
+        for k in range(self.first[b], self.first[b + 1]):
+            rate = ti.max(rate, self.gather(self.order[k], b))
+        return rate
+
+    @ti.func
+    def locate(self, p, origin):
+        """Lowest node of particle p within its block's copy, and the particle's distance from it in cells."""
+        scaled = self.particles.x[p] / self.dx[None]
+        base = ti.floor(scaled - 0.5, ti.i32)
+        return base - 4 * origin + 1, scaled - ti.cast(base, Real)
+
+    @ti.func
+    def scatter(self, p, b):
+        """Add particle p to the nodes of block b."""
+        dx = self.dx[None]
+        local, f = self.locate(p, self.origin[b])
+        weights = spline_weights(f)
+        mass, dt = self.particles.mass[p], self.clock.dt[None]
+        volume = mass / self.constitution.table[self.particles.body[p]].rho0
+        affine = mass * self.particles.C[p] - (4.0 * dt * volume / (dx * dx)) * unpack(self.particles.tau[p])
+        momentum = mass * (self.particles.v[p] + dt * self.particles.acceleration[p])
+        start = b * COPY + (local[0] * SPAN + local[1]) * SPAN + local[2]
+        for i in range(3):
+            for j in range(3):
+                for k in ti.static(range(3)):
+                    weight = weights[0, i] * weights[1, j] * weights[2, k]
+                    offset = dx * (vec3(i, j, k) - f)
+                    m = momentum + affine @ offset
+                    value = weight * vec4(m[0], m[1], m[2], mass)
+                    n = start + (i * SPAN + j) * SPAN + k
+                    if ti.static(self.by_block):
+                        self.nodes[n] = self.nodes[n] + value
+                    else:
+                        ti.atomic_add(self.nodes[n], value)
+
+    @ti.func
+    def gather(self, p, b):
+        """Advance particle p with the velocity of its nodes; returns the inverse time step it allows [1/s]."""
+        dx = self.dx[None]
+        local, f = self.locate(p, self.origin[b])
+        weights = spline_weights(f)
+        sum_v, sum_L = vec4(0.0), mat3(0.0)
+        start = b * COPY + (local[0] * SPAN + local[1]) * SPAN + local[2]
+        for i in range(3):
+            for j in range(3):
+                for k in ti.static(range(3)):
+                    weighted = weights[0, i] * weights[1, j] * weights[2, k] * self.nodes[start + (i * SPAN + j) * SPAN + k]
+                    sum_v += weighted
+                    sum_L += vec3(weighted[0], weighted[1], weighted[2]).outer_product(vec3(i, j, k) - f)
+        own = ti.cast(1.0, Real)
+        for axis in ti.static(range(3)):
+            own *= weights[axis, 0] ** 2 + weights[axis, 1] ** 2 + weights[axis, 2] ** 2
+        rate = ti.cast(0.0, Real)
+        if sum_v[3] - own * self.particles.mass[p] <= ALONE * self.particles.mass[p]:
+            self.drift(p)
+        else:
+            rate = self.move(p, vec3(sum_v[0], sum_v[1], sum_v[2]), 4.0 / dx * sum_L)
+        self.check_place(p)
+        return rate
+
+    @ti.func
+    def move(self, p, v, L):
+        """Give particle p its new velocity and velocity gradient, and deform it."""
+        dx, dt = self.dx[None], self.clock.dt[None]
+        v *= 1.0 - dt * self.clock.damping[None]
+        self.particles.x[p] += dt * v
+        self.particles.v[p] = v
+        self.particles.C[p] = affine_velocity(L, dt)
+        c, diffusivity = self.constitution.update(p, L, dt, self.clock.fracturing[None])
+        if not self.particles.j[p] > -1.0 or tm.isinf(self.particles.j[p]):
+            self.clock.report_fault(FAULT_INVERTED, p)
+        wave = (c + v.norm()) / (self.cfl[None] * dx)
+        fall = ti.sqrt(self.particles.acceleration[p].norm() / dx)
+        return ti.max(wave, ti.sqrt(norm_squared(L)) / LARGEST_INCREMENT, fall, 6.0 * diffusivity / (dx * dx))
+
+    @ti.func
+    def drift(self, p):
+        """A particle that shares no node with another is ballistic: its strain rests, its spin stays."""
+        dt = self.clock.dt[None]
+        self.particles.v[p] += dt * self.particles.acceleration[p]
+        self.particles.x[p] += dt * self.particles.v[p]
+        self.particles.C[p] = 0.5 * (self.particles.C[p] - self.particles.C[p].transpose())
+
+    @ti.func
+    def check_place(self, p):
+        """Ask for new blocks once particle p has left its block by a cell."""
+        base = ti.floor(self.particles.x[p] / self.dx[None] - 0.5, ti.i32)
+        local = base - 4 * self.particles.origin[p] + 1
+        if local.min() < 0 or local.max() > SPAN - 3:
+            self.clock.moved_out[None] = 1
+
+
+@ti.func
+def corner_offset(corner):
+    """Place of a tile inside the copy of the block at one of its eight corners."""
+    return ((corner >> 2) * SPAN + ((corner >> 1) & 1)) * SPAN * 4 + (corner & 1) * 4
+
+
+@ti.func
+def affine_velocity(L, dt):
+    """Affine velocity after a step: exact in isotropic expansion, and its skew part keeps angular momentum."""
+    A = (identity() + dt * L).inverse()
+    return symmetric(L @ A) + 0.5 * (L - L.transpose())
