@@ -33,7 +33,7 @@ class Blocks:
         origin: block coordinates, shape [block_count, 3].
         first: range of each block in `order`, shape [block_count + 1].
         order: particles by block, then by index; those that are alone come last, shape [particle_count].
-        source: for every tile the eight blocks whose copies hold it, at offsets `CORNERS`, or -1; shape [tile_count, 8].
+        source: for every tile the eight blocks whose copies hold it, or -1; shape [tile_count, 8].
     """
 
     origin: Integers
@@ -89,7 +89,7 @@ def _coordinates(keys: Integers) -> Integers:
 def _neighbour_count(keys: Integers) -> Integers:
     """Number of occupied blocks among the 27 around each block, itself included."""
     around = _key(_coordinates(keys)[:, None, :] + NEIGHBOURS)
-    return np.isin(around, keys).sum(axis=1)
+    return np.asarray(np.isin(around, keys).sum(axis=1))
 
 
 def _sources(keys: Integers) -> Integers:

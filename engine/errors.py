@@ -6,7 +6,11 @@ class SceneError(ValueError):
 
 
 class JobError(RuntimeError):
-    """The job directory cannot be run: claimed by another process, of another physics version, or damaged."""
+    """The job directory cannot be run: of another physics version, or damaged."""
+
+
+class JobBusyError(JobError):
+    """Another process runs the job."""
 
 
 class RunFault(RuntimeError):

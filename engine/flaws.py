@@ -36,7 +36,7 @@ def draw_flaws(body: Body, fracture: Fracture, generator: np.random.Generator) -
 def _owners(particles: int, fracture: Fracture, generator: np.random.Generator) -> NDArray[np.int64]:
     """The particle that each flaw falls on."""
     if fracture.flaws == "2NlnN":
-        return generator.integers(particles, size=round(2.0 * particles * np.log(particles)))
+        return np.asarray(generator.integers(particles, size=round(2.0 * particles * np.log(particles))))
     owners = generator.integers(particles, size=particles)
     while len(np.unique(owners)) < particles:
         owners = np.concatenate([owners, generator.integers(particles, size=particles)])

@@ -48,7 +48,8 @@ def _body_state(scene: Scene, index: int, body: Body) -> Arrays:
 def _hydrostatic_pressure(body: Body, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """P(r) = (2/3) pi G rho^2 (R^2 - r^2) [Pa] (engine/physics.md, section 8)."""
     square = np.einsum("ij,ij->i", points, points)
-    return 2.0 / 3.0 * np.pi * G * body.material.rho0**2 * np.maximum(body.radius**2 - square, 0.0)
+    pressure = 2.0 / 3.0 * np.pi * G * body.material.rho0**2 * np.maximum(body.radius**2 - square, 0.0)
+    return np.asarray(pressure)
 
 
 def _spin_tensor(body: Body) -> NDArray[np.float64]:

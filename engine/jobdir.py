@@ -12,7 +12,7 @@ from pathlib import Path
 
 import psutil
 
-from engine.errors import JobError
+from engine.errors import JobBusyError, JobError
 from engine.storage import write_json
 
 STATES = ("pending", "running", "interrupted", "done", "failed")
@@ -139,21 +139,21 @@ class JobDirectory:
         """Hold the job for this process; the claim dies with the process.
 
         Raises:
-            JobError: another process runs this job.
+            JobBusyError: another process runs this job.
         """
         with (self.path / "lock").open("w") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except OSError as error:
-                raise JobError(f"{self.path}: already being run{_by(self.status())}; wait for it or stop it") from error
+                raise self._busy(self.status()) from error
             status = self.status()
             if status.state == "running" and status.pid != os.getpid():
-                raise JobError(f"{self.path}: already being run{_by(status)}; wait for it or stop it")
+                raise self._busy(status)
             yield
 
-
-def _by(status: Status) -> str:
-    return f" by process {status.pid} on {status.host}" if status.pid else ""
+    def _busy(self, status: Status) -> JobBusyError:
+        by = f" by process {status.pid} on {status.host}" if status.pid else ""
+        return JobBusyError(f"{self.path}: already being run{by}; wait for it or stop it")
 
 
 def _is_alive(status: Status) -> bool:

@@ -69,12 +69,12 @@ def _straight_back(position: Array, velocity: Array) -> Approach:
 
 
 def _turning_point(time: float, state: Array) -> float:
-    return float(state[:3] @ state[3:])
+    return float(np.dot(state[:3], state[3:]))
 
 
 def _distance(separation: float) -> Callable[[float, Array], float]:
     def beyond(time: float, state: Array) -> float:
-        return float(np.linalg.norm(state[:3])) - separation
+        return float(np.linalg.norm(state[:3]) - separation)
 
     return beyond
 

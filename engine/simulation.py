@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engine.blocks import block_of, build_blocks
 from engine.clock import FAULT_NONE, Clock
@@ -11,8 +12,9 @@ from engine.errors import RunFault
 from engine.fracture import Fracture, Unbreakable
 from engine.gravity import DirectSum
 from engine.initial import all_flaws, initial_state
-from engine.particles import Particles
-from engine.scene import Scene
+from engine.ledger import Totals, elastic_energy, totals
+from engine.particles import Arrays, Particles
+from engine.scene import Body, Scene
 from engine.strength import Strength, Unlimited
 from engine.tillotson import Tillotson
 from engine.transfer import Transfer
@@ -46,7 +48,7 @@ class Simulation:
             physics.shear,
         )
         self._make_room(scene.particles // 8)
-        self.gravity_due = scene.start_time
+        self.gravity_due = scene.start_time if self.gravity else math.inf
         self.gravity_change = 0.0
 
     @property
@@ -71,16 +73,17 @@ class Simulation:
         self.clock.rate[None] = self._first_rate()
 
     def advance(self, until: float) -> None:
-        """Take steps until the first one that reaches `until` [s]; the same steps whatever the pauses between.
+        """Take a bounded number of steps, none of them after the first that reaches `until` [s].
+
+        Which steps are taken depends on the scene alone, never on how they are spread over calls.
 
         Raises:
             RunFault: a particle left the range in which the equations hold.
         """
-        while self.time < until and not self.finished:
-            self._handle_events()
-            self.clock.pause_time[None] = min(until, self.gravity_due)
-            self._launch()
-            self._check_fault()
+        self._handle_events()
+        self.clock.pause_time[None] = min(until, self.gravity_due)
+        self._launch()
+        self._check_fault()
 
     def rebuild_blocks(self) -> None:
         """Sort particles into the blocks they are in now."""
@@ -103,7 +106,7 @@ class Simulation:
     def _handle_events(self) -> None:
         if self.clock.moved_out[None]:
             self.rebuild_blocks()
-        if self.gravity and self.time >= self.gravity_due:
+        if self.time >= self.gravity_due:
             self._update_gravity()
 
     def _update_gravity(self) -> None:
@@ -112,11 +115,11 @@ class Simulation:
         before = self.particles.read("acceleration")["acceleration"]
         self.gravity.accelerate(ahead=0.5 * interval)
         after = self.particles.read("acceleration")["acceleration"]
-        self.gravity_change = float(np.linalg.norm(after - before) / max(np.linalg.norm(after), 1e-300))
+        self.gravity_change = float(np.linalg.norm(after - before)) / max(float(np.linalg.norm(after)), 1e-300)
         self.gravity_due = self.time + interval
 
     def _launch(self) -> None:
-        left = self.clock.pause_time[None] - self.time
+        left = min(self.clock.pause_time[None], self.scene.end_time) - self.time
         rate = max(self.clock.rate[None], self.clock.least_rate[None])
         for _ in range(min(LAUNCHES, math.ceil(left * rate) + 1)):
             self.transfer.step()
@@ -132,9 +135,24 @@ class Simulation:
 
     def _first_rate(self) -> float:
         """Inverse time step [1/s] that bodies at rest density and full speed demand."""
-        scene = self.scene
-        speed = max(
-            body.material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + float(np.linalg.norm(body.spin)) * body.radius
-            for body in scene.bodies
-        )
-        return speed / (scene.numerics.cfl * scene.dx)
+        numerics = self.scene.numerics
+        return max(_fastest(body) for body in self.scene.bodies) / (numerics.cfl * self.scene.dx)
+
+    def totals(self) -> Totals:
+        """What the run must conserve, now."""
+        state = self.particles.read("x", "v", "C", "E", "mass", "j", "tau", "body")
+        materials = [body.material for body in self.scene.bodies]
+        bulk = np.array([material.tillotson.A for material in materials])[state["body"]]
+        shear = np.array([material.shear_modulus for material in materials])[state["body"]]
+        elastic = elastic_energy(state, self.rho0(state), bulk, shear)
+        return totals(state, self.scene.dx, elastic, self.gravity.energy() if self.gravity else 0.0)
+
+    def rho0(self, state: Arrays) -> NDArray[np.float64]:
+        """Reference density of every particle [kg/m^3], shape [particle_count]."""
+        return np.array([body.material.rho0 for body in self.scene.bodies])[state["body"]]
+
+
+def _fastest(body: Body) -> float:
+    """Highest signal speed [m/s] in an unstressed body."""
+    rotation = float(np.linalg.norm(body.spin)) * body.radius
+    return body.material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + rotation

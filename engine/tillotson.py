@@ -38,7 +38,7 @@ class Tillotson:
         m = self.table[body]
         cold_P, cold_rho, cold_E = condensed(m, mu, E)
         P, P_rho, P_E = cold_P, cold_rho, cold_E
-        if mu < 0.0 and E > m.E_iv:
+        if mu < 0.0 and m.E_iv < E:
             hot_P, hot_rho, hot_E = expanded(m, mu, E)
             hot = ti.min((E - m.E_iv) / (m.E_cv - m.E_iv), 1.0)
             P = hot * hot_P + (1.0 - hot) * cold_P

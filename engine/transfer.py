@@ -1,4 +1,4 @@
-"""Momentum from particles to grid and back: quadratic-spline affine MPM (engine/physics.md, section 1; Jiang et al. 2015).
+"""Quadratic-spline affine MPM: momentum to the grid and back (engine/physics.md, section 1; Jiang et al. 2015).
 
 Each block of particles adds to its own copy of the nodes it touches; one pass over the tiles sums the copies in a
 fixed order and writes the common velocity back into each. On the CPU one thread works on one block at a time, so no two
@@ -188,7 +188,9 @@ class Transfer:
         for i in range(3):
             for j in range(3):
                 for k in ti.static(range(3)):
-                    weighted = weights[0, i] * weights[1, j] * weights[2, k] * self.nodes[start + (i * SPAN + j) * SPAN + k]
+                    weighted = (
+                        weights[0, i] * weights[1, j] * weights[2, k] * self.nodes[start + (i * SPAN + j) * SPAN + k]
+                    )
                     sum_v += weighted
                     sum_L += vec3(weighted[0], weighted[1], weighted[2]).outer_product(vec3(i, j, k) - f)
         own = ti.cast(1.0, Real)

@@ -1,0 +1,91 @@
+"""Command line: `python -m engine run JOBDIR`."""
+
+import logging
+import os
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from engine.errors import JobBusyError, JobError, SceneError
+from engine.jobdir import JobDirectory, Status
+
+application = typer.Typer(
+    add_completion=False, no_args_is_help=True, help="One simulation: a scene in, a job directory out."
+)
+
+DONE, FAILED, BAD_INPUT, BUSY, INTERRUPTED = 0, 1, 2, 3, 130
+"""Exit codes."""
+
+
+class Arch(StrEnum):
+    """Devices the engine runs on."""
+
+    CPU = "cpu"
+    CUDA = "cuda"
+
+
+@application.callback()
+def main() -> None:
+    """Keep `run` a named command, though it is the only one."""
+
+
+@application.command()
+def run(
+    directory: Annotated[Path, typer.Argument(help="Job directory that holds scene.json or scene.toml.")],
+    threads: Annotated[int, typer.Option(min=1, help="CPU threads.")] = os.cpu_count() or 1,
+    arch: Annotated[Arch, typer.Option(help="Device.")] = Arch.CPU,
+    checkpoint_interval: Annotated[float, typer.Option(min=0.0, help="Computing time between checkpoints [s].")] = 30.0,
+) -> None:
+    """Run the scene in DIRECTORY to its end, from its checkpoint if it has one.
+
+    Exit code 0: done; 1: the run failed; 2: bad input; 3: another process runs it; 130: interrupted, run to resume.
+    """
+    try:
+        status = _run(directory, threads, arch, checkpoint_interval)
+    except JobBusyError as error:
+        _exit(str(error), BUSY)
+    except (SceneError, JobError) as error:
+        _exit(str(error), BAD_INPUT)
+    except OSError as error:
+        _exit(f"{directory}: {error}; the last checkpoint is intact, run again to resume", FAILED)
+    if status.state != "done":
+        _exit(f"{directory}: {status.state}: {status.reason}", FAILED if status.state == "failed" else INTERRUPTED)
+    typer.echo(f"{directory}: done after {status.step} steps")
+
+
+def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) -> Status:
+    """Import the engine only now: bad options and missing directories answer at once."""
+    from engine.run import Options, run_job
+    from engine.scene import scene_in
+
+    scene_in(directory)
+    logging.basicConfig(
+        filename=JobDirectory(directory).log, level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s"
+    )
+    console = Console(stderr=True)
+    with console.status("starting") as spinner:
+        options = Options(
+            arch.value, threads, checkpoint_interval, lambda status: spinner.update(progress_line(status))
+        )
+        return run_job(directory, options)
+
+
+def progress_line(status: Status) -> str:
+    """Simulated time, rate and time left in one line."""
+    return (
+        f"t = {status.time:.0f} of {status.end_time:.0f} s ({100.0 * status.progress:.0f} %), step {status.step}, "
+        f"{status.steps_per_second:.0f} steps/s, {status.time_left:.0f} s left"
+    )
+
+
+def _exit(message: str, code: int) -> None:
+    print(message, file=sys.stderr)
+    raise typer.Exit(code)
+
+
+if __name__ == "__main__":
+    application()

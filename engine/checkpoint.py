@@ -1,0 +1,86 @@
+"""Saving everything the next step reads, so that a resumed run equals an uninterrupted one bit for bit."""
+
+from typing import Any
+
+import xarray as xr
+
+from engine import PHYSICS_VERSION
+from engine.errors import JobError
+from engine.jobdir import JobDirectory
+from engine.particles import Particles
+from engine.simulation import Simulation
+from engine.storage import is_finite, read_dataset, write_dataset
+
+CLOCK = {"time": float, "dt": float, "rate": float, "step": int, "moved_out": int}
+"""Fields of the clock that outlive a pause."""
+
+EVENTS = ("gravity_due", "gravity_change")
+"""Attributes of the simulation that do."""
+
+
+def save_checkpoint(job: JobDirectory, simulation: Simulation, progress: dict[str, float]) -> None:
+    """Write a checkpoint; the one before it is kept.
+
+    Args:
+        job: the job directory.
+        simulation: what to save, between two calls of `advance`.
+        progress: what the caller needs to go on, such as the times of its next outputs.
+    """
+    state = simulation.particles.read(*Particles.STATE)
+    variables = {name: (_dimensions(name, values.ndim), values) for name, values in state.items()}
+    clock = {name: kind(getattr(simulation.clock, name)[None]) for name, kind in CLOCK.items()}
+    events = {name: float(getattr(simulation, name)) for name in EVENTS}
+    attributes: dict[str, Any] = {"physics_version": PHYSICS_VERSION, "scene_hash": simulation.scene.hash()}
+    dataset = xr.Dataset(variables, attrs={**attributes, **clock, **events, **progress})
+    if job.checkpoint.exists():
+        job.checkpoint.replace(job.previous_checkpoint)
+    write_dataset(job.checkpoint, dataset)
+
+
+def load_checkpoint(job: JobDirectory, simulation: Simulation) -> dict[str, float] | None:
+    """Restore the newest readable checkpoint; returns the `progress` it was saved with, `None` if there is none.
+
+    Raises:
+        JobError: the checkpoint belongs to another scene or physics version.
+    """
+    for path in (job.checkpoint, job.previous_checkpoint):
+        dataset = _readable(path)
+        if dataset is not None:
+            _refuse_foreign(dataset, simulation, str(path))
+            return _restore(dataset, simulation)
+    return None
+
+
+def _dimensions(name: str, ndim: int) -> tuple[str, ...]:
+    return ("particle", *(f"{name}_{axis}" for axis in range(1, ndim)))
+
+
+def _readable(path: Any) -> xr.Dataset | None:
+    if not path.exists():
+        return None
+    try:
+        dataset = read_dataset(path)
+    except JobError:
+        return None
+    return dataset if is_finite(dataset) and set(Particles.STATE) <= set(dataset.data_vars) else None
+
+
+def _refuse_foreign(dataset: xr.Dataset, simulation: Simulation, path: str) -> None:
+    if int(dataset.attrs["physics_version"]) != PHYSICS_VERSION:
+        raise JobError(
+            f"{path}: written with physics version {dataset.attrs['physics_version']}, this is version "
+            f"{PHYSICS_VERSION}; results would mix: run the scene in a new directory"
+        )
+    if dataset.attrs["scene_hash"] != simulation.scene.hash():
+        raise JobError(f"{path}: belongs to another scene; run the changed scene in a new directory")
+
+
+def _restore(dataset: xr.Dataset, simulation: Simulation) -> dict[str, float]:
+    attributes = dict(dataset.attrs)
+    simulation.particles.write({name: dataset[name].values for name in Particles.STATE})
+    simulation.use_stored_blocks()
+    for name, kind in CLOCK.items():
+        getattr(simulation.clock, name)[None] = kind(attributes.pop(name))
+    for name in EVENTS:
+        setattr(simulation, name, float(attributes.pop(name)))
+    return {name: float(value) for name, value in attributes.items() if name not in ("physics_version", "scene_hash")}

@@ -1,0 +1,85 @@
+"""What a run must conserve, summed on the host in a fixed order (engine/physics.md, section 2)."""
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.particles import Arrays
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Totals:
+    """Sums over all particles.
+
+    Attributes:
+        mass: [kg].
+        momentum: [kg m/s], shape [3].
+        angular_momentum: about the origin [kg m^2/s], affine part included, shape [3].
+        kinetic_energy: of the particles' mean motion [J].
+        affine_kinetic_energy: of the motion inside particles [J].
+        internal_energy: all work done by stress, so elastic energy too [J].
+        elastic_energy: part of the internal energy that is stored in strain [J].
+        gravitational_energy: [J].
+    """
+
+    mass: float
+    momentum: Vector
+    angular_momentum: Vector
+    kinetic_energy: float
+    affine_kinetic_energy: float
+    internal_energy: float
+    elastic_energy: float
+    gravitational_energy: float
+
+    @property
+    def total_energy(self) -> float:
+        """Energy that only the dissipation of the scheme can lower [J]."""
+        return self.kinetic_energy + self.affine_kinetic_energy + self.internal_energy + self.gravitational_energy
+
+
+def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: float) -> Totals:
+    """Conserved quantities of a state.
+
+    Args:
+        state: fields x, v, C, E and mass of every particle.
+        dx: grid spacing [m].
+        elastic: elastic energy of every particle [J], shape [particle_count].
+        gravitational_energy: [J].
+    """
+    m, x, v, C = state["mass"], state["x"], state["v"], state["C"]
+    inertia = 0.25 * dx**2  # second moment of the quadratic spline, per mass
+    skew = np.stack([C[:, 2, 1] - C[:, 1, 2], C[:, 0, 2] - C[:, 2, 0], C[:, 1, 0] - C[:, 0, 1]], axis=1)
+    return Totals(
+        mass=float(np.sum(m)),
+        momentum=np.sum(m[:, None] * v, axis=0),
+        angular_momentum=np.sum(m[:, None] * (np.cross(x, v) + inertia * skew), axis=0),
+        kinetic_energy=0.5 * float(np.sum(m * np.sum(v**2, axis=1))),
+        affine_kinetic_energy=0.5 * inertia * float(np.sum(m * np.sum(C**2, axis=(1, 2)))),
+        internal_energy=float(np.sum(m * state["E"])),
+        elastic_energy=float(np.sum(elastic)),
+        gravitational_energy=gravitational_energy,
+    )
+
+
+def elastic_energy(state: Arrays, rho0: Vector, bulk: Vector, shear: Vector) -> Vector:
+    """Energy stored in the strain of every particle [J], for small strains.
+
+    Args:
+        state: fields j, tau and mass of every particle.
+        rho0, bulk, shear: reference density [kg/m^3] and moduli [Pa] of every particle, shape [particle_count].
+    """
+    pressure = -np.sum(state["tau"][:, :3], axis=1) / 3.0
+    s = state["tau"].copy()
+    s[:, :3] += pressure[:, None]
+    square = np.sum(s[:, :3] ** 2, axis=1) + 2.0 * np.sum(s[:, 3:] ** 2, axis=1)
+    density = pressure**2 / (2.0 * bulk) + square / (4.0 * shear)
+    return np.asarray(state["mass"] / rho0 * density)
+
+
+def as_row(totals_now: Totals, **others: float) -> dict[str, NDArray[np.float64]]:
+    """One row of the history."""
+    row = {**asdict(totals_now), "total_energy": totals_now.total_energy, **others}
+    return {name: np.asarray(value, dtype=np.float64) for name, value in row.items()}

@@ -1,0 +1,76 @@
+"""Where results come from: command, code, packages and device of every session of a job."""
+
+import hashlib
+import json
+import platform
+import socket
+import subprocess
+import sys
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from engine import PHYSICS_VERSION
+from engine.backend import Real
+from engine.jobdir import JobDirectory
+from engine.scene import Scene
+from engine.storage import write_json
+
+PACKAGES = ("asteroid-collisions", "taichi", "numpy", "scipy", "xarray", "netCDF4", "pydantic")
+
+
+def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> None:
+    """Add this session to provenance.json."""
+    sessions = [*_earlier_sessions(job), _session(arch, threads)]
+    content = {
+        "physics_version": PHYSICS_VERSION,
+        "scene_hash": scene.hash(),
+        "seed": scene.seed,
+        "sessions": sessions,
+    }
+    write_json(job.provenance, content)
+
+
+def _earlier_sessions(job: JobDirectory) -> list[Any]:
+    try:
+        return list(json.loads(job.provenance.read_text(encoding="utf-8"))["sessions"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+
+
+def _session(arch: str, threads: int) -> dict[str, Any]:
+    return {
+        "started": datetime.now(UTC).isoformat(timespec="seconds"),
+        "command": sys.argv,
+        "host": socket.gethostname(),
+        "platform": platform.platform(),
+        "python": platform.python_version(),
+        "packages": {name: _version(name) for name in PACKAGES},
+        "arch": arch,
+        "threads": threads,
+        "precision": str(Real),
+        "git": _git_state(),
+    }
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def _git_state() -> dict[str, Any]:
+    """Commit of the code, whether it was changed since, and a hash of the change."""
+    try:
+        commit = _git("rev-parse", "HEAD").decode().strip()
+        difference = _git("diff", "HEAD")
+    except (OSError, subprocess.SubprocessError):
+        return {"commit": "unknown"}
+    return {"commit": commit, "dirty": bool(difference), "difference": hashlib.sha256(difference).hexdigest()}
+
+
+def _git(*arguments: str) -> bytes:
+    command = ["git", "-C", str(Path(__file__).parent), *arguments]
+    return subprocess.run(command, check=True, capture_output=True, timeout=10).stdout

@@ -1,0 +1,222 @@
+"""Running one job directory: from its scene or checkpoint to its final state."""
+
+import logging
+import signal
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+
+from engine import PHYSICS_VERSION, backend
+from engine.checkpoint import load_checkpoint, save_checkpoint
+from engine.errors import RunFault
+from engine.history import History
+from engine.jobdir import HEARTBEAT_PERIOD, JobDirectory, Status
+from engine.ledger import as_row
+from engine.provenance import record_session
+from engine.scene import Scene, scene_in
+from engine.simulation import Simulation
+from engine.snapshot import FIELDS, snapshot
+from engine.storage import is_finite, read_dataset, write_dataset
+
+log = logging.getLogger("engine")
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to run, without influence on results.
+
+    Attributes:
+        arch: `cpu` or `cuda`.
+        threads: CPU threads.
+        checkpoint_interval: computing time between checkpoints [s].
+        report: called with the status every few seconds.
+    """
+
+    arch: str = "cpu"
+    threads: int = 1
+    checkpoint_interval: float = 30.0
+    report: Callable[[Status], None] = lambda status: None
+
+
+def run_job(directory: Path, options: Options) -> Status:
+    """Run or resume the job in `directory` and return how it stands: done, failed or interrupted.
+
+    Raises:
+        SceneError: the directory holds no valid scene.
+        JobError: another process runs it, or its files belong to another scene or physics version.
+    """
+    scene, job = scene_in(directory), JobDirectory(directory)
+    with job.claim():
+        status = job.status()
+        if status.state == "done" and job.final.exists():
+            return status
+        backend.start(options.arch, options.threads)
+        return Run(scene, job, options).to_end()
+
+
+class Run:
+    """One session of a job."""
+
+    def __init__(self, scene: Scene, job: JobDirectory, options: Options) -> None:
+        self.scene, self.job, self.options = scene, job, options
+        self.simulation = Simulation(scene)
+        self.history = History()
+        self.history_due = self.snapshot_due = scene.start_time
+        if scene.output.snapshot_interval is None:
+            self.snapshot_due = np.inf
+        self.wall_before, self.begun = 0.0, time.monotonic()
+        self.saved = self.reported = time.monotonic()
+        self.rate = 0.0
+        self.stopping = False
+
+    def to_end(self) -> Status:
+        """Go on until the end time, a fault, or a signal to stop."""
+        previous = {number: signal.signal(number, self._stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            self._begin()
+            self._loop()
+            return self._finish() if self.simulation.finished else self._interrupt()
+        except RunFault as fault:
+            return self._fail(str(fault))
+        finally:
+            for number, handler in previous.items():
+                signal.signal(number, handler)
+
+    def _stop(self, number: int, frame: FrameType | None) -> None:
+        self.stopping = True
+
+    def _begin(self) -> None:
+        """Restore the last checkpoint, or start from the scene."""
+        progress = load_checkpoint(self.job, self.simulation)
+        if progress is None:
+            self.simulation.start()
+            log.info("started at t = %.6g s", self.simulation.time)
+        else:
+            self._restore(progress)
+            log.info("resumed at t = %.6g s, step %d", self.simulation.time, self.simulation.step)
+        record_session(self.job, self.scene, self.options.arch, self.options.threads)
+        self._write_outputs()
+        self._report("running")
+
+    def _restore(self, progress: dict[str, float]) -> None:
+        self.history_due, self.snapshot_due = progress["history_due"], progress["snapshot_due"]
+        self.wall_before = progress["wall_time"]
+        if self.job.history.exists():
+            dataset = read_dataset(self.job.history)
+            self.history = History.from_dataset(dataset.isel(time=dataset["step"] <= self.simulation.step))
+
+    def _loop(self) -> None:
+        steps, since = self.simulation.step, time.monotonic()
+        while not (self.simulation.finished or self.stopping):
+            self.simulation.advance(min(self.history_due, self.snapshot_due))
+            self._write_outputs()
+            now = time.monotonic()
+            if now - self.saved >= self.options.checkpoint_interval:
+                self._save()
+            if now - self.reported >= HEARTBEAT_PERIOD:
+                self.rate = (self.simulation.step - steps) / (now - since)
+                steps, since = self.simulation.step, now
+                self._report("running")
+
+    def _write_outputs(self) -> None:
+        """Record what has come due; the last state of all is always recorded."""
+        output, simulation = self.scene.output, self.simulation
+        if simulation.time >= self.history_due or (simulation.finished and self.history_due < np.inf):
+            self._append_history()
+            self.history_due = np.inf if simulation.finished else simulation.time + output.history_interval
+        if simulation.time >= self.snapshot_due:
+            self._write_snapshot()
+            self.snapshot_due = simulation.time + (output.snapshot_interval or np.inf)
+
+    def _append_history(self) -> None:
+        simulation = self.simulation
+        totals = simulation.totals()
+        row = as_row(
+            totals,
+            time=simulation.time,
+            step=simulation.step,
+            dt=float(simulation.clock.dt[None]),
+            gravity_change=simulation.gravity_change,
+            damaged_fraction=float(np.mean(simulation.particles.read("root")["root"] ** 3)),
+            isolated=float(simulation.transfer.alone_count[None]),
+        )
+        if not all(np.isfinite(value).all() for value in row.values()):
+            bad = [name for name, value in row.items() if not np.isfinite(value).all()]
+            raise RunFault(f"{', '.join(bad)} not finite at t = {simulation.time:.6g} s: try a smaller numerics.cfl")
+        self.history.append(row)
+
+    def _attributes(self) -> dict[str, Any]:
+        return {
+            "time": self.simulation.time,
+            "step": self.simulation.step,
+            "spacing": self.scene.spacing,
+            "dx": self.scene.dx,
+            "scene_hash": self.scene.hash(),
+            "physics_version": PHYSICS_VERSION,
+        }
+
+    def _particles(self, dtype: type) -> Any:
+        state = self.simulation.particles.read(*FIELDS)
+        return snapshot(state, self.simulation.rho0(state), self._attributes(), dtype)
+
+    def _write_snapshot(self) -> None:
+        self.job.snapshots.mkdir(exist_ok=True)
+        write_dataset(self.job.snapshots / f"{self.simulation.time:.3f}.nc", self._particles(np.float32))
+
+    def _write_history(self) -> None:
+        attributes = {"scene_hash": self.scene.hash(), "physics_version": PHYSICS_VERSION}
+        write_dataset(self.job.history, self.history.dataset(attributes))
+
+    def _save(self) -> None:
+        """Write history, then checkpoint: a resumed run drops rows that are newer than its checkpoint."""
+        self._write_history()
+        due = {"history_due": self.history_due, "snapshot_due": self.snapshot_due, "wall_time": self._wall_time()}
+        save_checkpoint(self.job, self.simulation, due)
+        self.saved = time.monotonic()
+
+    def _wall_time(self) -> float:
+        return self.wall_before + time.monotonic() - self.begun
+
+    def _report(self, state: str, reason: str = "") -> Status:
+        simulation, scene = self.simulation, self.scene
+        left = (scene.end_time - simulation.time) / max(float(simulation.clock.dt[None]), 1e-300)
+        status = Status(
+            state=state,
+            reason=reason,
+            time=simulation.time,
+            start_time=scene.start_time,
+            end_time=scene.end_time,
+            step=simulation.step,
+            wall_time=self._wall_time(),
+            steps_per_second=self.rate,
+            time_left=left / self.rate if self.rate > 0.0 and state == "running" else 0.0,
+        )
+        self.job.write_status(status)
+        self.options.report(status)
+        self.reported = time.monotonic()
+        return status
+
+    def _finish(self) -> Status:
+        final = self._particles(np.float64)
+        if not is_finite(final):
+            return self._fail("the final state is not finite: try a smaller numerics.cfl")
+        self._write_history()
+        write_dataset(self.job.final, final)
+        log.info("done: %d steps in %.1f s", self.simulation.step, self._wall_time())
+        return self._report("done")
+
+    def _interrupt(self) -> Status:
+        self._save()
+        log.info("interrupted at t = %.6g s; run again to resume", self.simulation.time)
+        return self._report("interrupted", "stopped by a signal; run again to resume")
+
+    def _fail(self, reason: str) -> Status:
+        if self.history.rows:
+            self._write_history()
+        log.error("failed: %s", reason)
+        return self._report("failed", reason)
