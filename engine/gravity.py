@@ -6,11 +6,11 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.backend import TASK, Real, capacity
+from engine.backend import TASK, Real, capacity, on_gpu
 from engine.orbit import G
 
 GROUP = 64
-"""Targets that one pass over the sources serves together: their sums stay in the nearest cache."""
+"""Targets that one CPU thread serves in one pass over the sources: their sums stay in the nearest cache."""
 
 
 @ti.data_oriented
@@ -24,6 +24,7 @@ class DirectSum:
 
     def __init__(self, particles: Any, radius: float) -> None:
         self.particles, self.count = particles, particles.count
+        self.group, self.task = (1, 1) if on_gpu() else (GROUP, TASK)
         self.radius = ti.field(Real, ())
         self.radius[None] = radius
         shape = capacity(particles.count)
@@ -60,10 +61,10 @@ class DirectSum:
     @ti.kernel
     def sum_pairs(self, count: ti.i32):
         """Acceleration and potential of every particle, sources always in the same order."""
-        for t in range((count + GROUP - 1) // GROUP * TASK):
-            if t % TASK == 0:
-                first = t // TASK * GROUP
-                last = ti.min(first + GROUP, count)
+        for t in range((count + self.group - 1) // self.group * self.task):
+            if t % self.task == 0:
+                first = t // self.task * self.group
+                last = ti.min(first + self.group, count)
                 for p in range(first, last):
                     self.ax[p], self.ay[p], self.az[p] = 0.0, 0.0, 0.0
                     self.potential[p] = 1.5 * self.mu[p] / self.radius[None]  # takes out the particle's own share

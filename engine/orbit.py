@@ -58,7 +58,7 @@ def apocentre(position: Array, velocity: Array, mu: float) -> float:
     if energy >= 0.0:
         return float("inf")
     momentum = float(np.linalg.norm(np.cross(position, velocity)))
-    eccentricity = max(0.0, 1.0 + 2.0 * energy * (momentum / mu) ** 2) ** 0.5
+    eccentricity = float(np.sqrt(max(0.0, 1.0 + 2.0 * energy * (momentum / mu) ** 2)))
     return -mu / (2.0 * energy) * (1.0 + eccentricity)
 
 

@@ -1,0 +1,148 @@
+"""Running, killing and resuming jobs through the command line."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from engine.jobdir import JobDirectory
+from engine.storage import read_dataset
+from tests.engine.jobs import assert_same, assert_same_results, engine_command, run_engine, write_job
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An uninterrupted run on one thread, without a checkpoint."""
+    directory = write_job(tmp_path_factory.mktemp("reference") / "job")
+    result = run_engine(directory)
+    assert result.returncode == 0, result.stderr
+    return directory
+
+
+def start_and_stop(directory: Path, number: signal.Signals) -> int:
+    """Run with constant checkpoints and send a signal once the second one is there."""
+    process = subprocess.Popen(engine_command(directory, "--checkpoint-interval", "0"), stderr=subprocess.PIPE)
+    job = JobDirectory(directory)
+    while not job.previous_checkpoint.exists():
+        assert process.poll() is None, "the run ended before it could be stopped"
+        time.sleep(0.005)
+    process.send_signal(number)
+    process.communicate(timeout=60)
+    return process.returncode
+
+
+def test_a_run_writes_all_files_of_the_contract(reference: Path) -> None:
+    names = {path.name for path in reference.iterdir()}
+    expected = {"scene.json", "status.json", "log.txt", "history.nc", "final.nc", "provenance.json", "lock"}
+    assert expected <= names
+    assert JobDirectory(reference).status().state == "done"
+
+
+def test_a_killed_run_resumes_to_the_same_bits(tmp_path: Path, reference: Path) -> None:
+    directory = write_job(tmp_path / "job")
+    assert start_and_stop(directory, signal.SIGKILL) == -signal.SIGKILL
+    assert JobDirectory(directory).status().state == "interrupted"
+    assert run_engine(directory).returncode == 0
+    assert "resumed" in (directory / "log.txt").read_text()
+    assert_same_results(directory, reference)
+
+
+def test_a_terminated_run_saves_and_resumes_to_the_same_bits(tmp_path: Path, reference: Path) -> None:
+    directory = write_job(tmp_path / "job")
+    assert start_and_stop(directory, signal.SIGTERM) == 130
+    assert run_engine(directory, "--checkpoint-interval", "0").returncode == 0
+    assert_same_results(directory, reference)
+
+
+def test_two_threads_give_the_same_bits_as_one(tmp_path: Path, reference: Path) -> None:
+    directory = write_job(tmp_path / "job")
+    assert run_engine(directory, "--threads", "2").returncode == 0
+    assert_same_results(directory, reference)
+
+
+def test_a_damaged_checkpoint_falls_back_to_the_one_before(tmp_path: Path, reference: Path) -> None:
+    directory = write_job(tmp_path / "job")
+    start_and_stop(directory, signal.SIGKILL)
+    job = JobDirectory(directory)
+    newest = job.checkpoint if job.checkpoint.exists() else job.previous_checkpoint
+    newest.write_bytes(newest.read_bytes()[:1000])
+    assert run_engine(directory).returncode == 0
+    assert_same_results(directory, reference)
+
+
+def test_snapshots_do_not_change_the_run_between_them(tmp_path: Path, reference: Path) -> None:
+    directory = write_job(tmp_path / "job", output={"history_interval": 50.0, "snapshot_interval": 100.0})
+    assert run_engine(directory).returncode == 0
+    assert_same(read_dataset(directory / "history.nc").drop_attrs(), read_dataset(reference / "history.nc").drop_attrs())
+    assert len(list((directory / "snapshots").glob("*.nc"))) >= 4
+
+
+def test_a_finished_job_is_left_alone(reference: Path) -> None:
+    before = {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in reference.iterdir()}
+    assert run_engine(reference).returncode == 0
+    after = {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in reference.iterdir()}
+    for name in ("final.nc", "history.nc", "status.json", "provenance.json"):
+        assert before[name] == after[name]
+
+
+def test_a_job_that_another_process_runs_is_refused(tmp_path: Path) -> None:
+    directory = write_job(tmp_path / "job", end_time=40000.0)
+    with subprocess.Popen(engine_command(directory)) as process:
+        while JobDirectory(directory).status().state != "running":
+            time.sleep(0.05)
+        second = run_engine(directory)
+        process.kill()
+    assert second.returncode == 3
+    assert f"process {process.pid}" in second.stderr
+
+
+def test_a_fault_ends_as_failed_with_its_reason(tmp_path: Path) -> None:
+    directory = write_job(tmp_path / "job", velocity=60000.0, numerics={"cfl": 1.0}, gravity=None)
+    result = run_engine(directory)
+    assert result.returncode == 1
+    status = JobDirectory(directory).status()
+    assert status.state == "failed"
+    assert "particle" in status.reason and "try" in status.reason
+    assert not (directory / "final.nc").exists()
+
+
+def test_a_checkpoint_of_another_scene_is_refused(tmp_path: Path) -> None:
+    directory = write_job(tmp_path / "job")
+    start_and_stop(directory, signal.SIGKILL)
+    other = write_job(tmp_path / "other", velocity=100.0)
+    shutil.copy(other / "scene.json", directory / "scene.json")
+    result = run_engine(directory)
+    assert result.returncode == 2
+    assert "another scene" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"bodies": [{"radius": -1.0, "particles": 5}]}, "radius"),
+        ({"bodies": [{"radius": 1.0, "particles": 0}]}, "particles"),
+        ({"bodies": []}, "bodies"),
+        ({"end_tme": 5.0}, "end_time"),
+        ({"end_time": -5.0}, "end_time"),
+    ],
+)
+def test_a_wrong_scene_is_refused_and_nothing_is_written(tmp_path: Path, change: dict[str, object], told: str) -> None:
+    scene = {"bodies": [{"radius": 1.0, "particles": 5}], "end_time": 1.0, **change}
+    (tmp_path / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
+    result = run_engine(tmp_path)
+    assert result.returncode == 2
+    assert told in result.stderr and "scene.json" in result.stderr
+    assert os.listdir(tmp_path) == ["scene.json"]
+
+
+def test_a_missing_or_unreadable_scene_is_refused(tmp_path: Path) -> None:
+    assert run_engine(tmp_path / "nowhere").returncode == 2
+    (tmp_path / "scene.toml").write_text("bodies = [", encoding="utf-8")
+    result = run_engine(tmp_path)
+    assert result.returncode == 2
+    assert "scene.toml" in result.stderr
