@@ -13,6 +13,8 @@ VENV := .venv
 RUN := $(VENV)/bin/python -m
 INSTALLED := $(VENV)/installed
 RESOURCES = $(if $(WORKERS),--workers $(WORKERS)) $(if $(THREADS),--threads-per-job $(THREADS)) $(OPTIONS)
+# what is done is plotted, also when a job failed; the exit code is the campaign's
+THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; exit $$code
 
 .DEFAULT_GOAL := help
 .PHONY: help install campaign resume plan status plots test test-slow lint clean
@@ -30,12 +32,10 @@ help: ## explain all targets
 install: $(INSTALLED) ## make .venv and install everything into it
 
 campaign: $(INSTALLED) ## run all unfinished jobs of STUDY, collect the results and plot them
-	@$(RUN) campaigns run '$(STUDY)' --runs '$(RUNS)' $(RESOURCES)
-	@$(MAKE) --no-print-directory plots
+	@$(RUN) campaigns run '$(STUDY)' --runs '$(RUNS)' $(RESOURCES) $(THEN_PLOT)
 
 resume: $(INSTALLED) ## go on with a STUDY that was stopped, and plot its results
-	@$(RUN) campaigns resume '$(STUDY)' --runs '$(RUNS)' $(RESOURCES)
-	@$(MAKE) --no-print-directory plots
+	@$(RUN) campaigns resume '$(STUDY)' --runs '$(RUNS)' $(RESOURCES) $(THEN_PLOT)
 
 plan: $(INSTALLED) ## show what a run of STUDY would do with every job, and why
 	@$(RUN) campaigns plan '$(STUDY)' --runs '$(RUNS)'

@@ -17,16 +17,17 @@ class Hull:
 
     Attributes:
         volume: [m^3].
-        extents: edges of the smallest box around it, longest first [m], shape [3].
         ellipsoid: the uniform ellipsoid with the inertia tensor of the solid hull.
+        extents: edges of the box around it along that ellipsoid's axes [m], shape [3]. (The box of smallest volume
+            has no definite edges: around a nearly round body very different boxes are almost equally small.)
     """
 
     volume: float
-    extents: Array
     ellipsoid: Ellipsoid
+    extents: Array
 
 
-UNDEFINED = Hull(NAN, np.full(3, NAN), Ellipsoid(np.full(3, NAN), np.full((3, 3), NAN)))
+UNDEFINED = Hull(NAN, Ellipsoid(np.full(3, NAN), np.full((3, 3), NAN)), np.full(3, NAN))
 """The hull of points that span no volume."""
 
 
@@ -53,5 +54,5 @@ def hull_of_mesh(mesh: trimesh.Trimesh, scale: float = 1.0) -> Hull:
     """
     volume = float(mesh.volume)
     shape = ellipsoid_from(np.asarray(mesh.moment_inertia), volume)
-    extents = np.sort(trimesh.bounds.oriented_bounds(mesh)[1])[::-1]
-    return Hull(volume * scale**3, extents * scale, Ellipsoid(shape.axes * scale, shape.directions))
+    extents = np.ptp(mesh.vertices @ shape.directions.T, axis=0)
+    return Hull(volume * scale**3, Ellipsoid(shape.axes * scale, shape.directions), extents * scale)

@@ -127,7 +127,7 @@ def _hull(remnant: Particles) -> Numbers:
         "hull_b_over_a": hull.ellipsoid.b_over_a,
         "hull_c_over_a": hull.ellipsoid.c_over_a,
         "hull_volume": hull.volume,
-        **{f"box_{name}": float(edge) for name, edge in zip("abc", hull.extents, strict=True)},
+        **{f"extent_{name}": float(edge) for name, edge in zip("abc", hull.extents, strict=True)},
     }
 
 

@@ -30,12 +30,13 @@ def shape_change(remnant: Particles, job: JobDirectory) -> float:
     Raises:
         JobError: a snapshot cannot be read.
     """
-    times = np.array([time for time, _ in snapshots(job)])
+    taken = snapshots(job)
+    times = np.array([time for time, _ in taken])
     before = times[(times >= (1.0 - OLDEST) * remnant.time) & (times <= (1.0 - WINDOW) * remnant.time)]
     if not before.size or remnant.time <= 0.0:
         return float("nan")
     final = _ratios(ellipsoid_of(remnant.position, remnant.mass))
-    window = [path for time, path in snapshots(job) if before.max() <= time < remnant.time]
+    window = [path for time, path in taken if before.max() <= time < remnant.time]
     earlier = [largest_clump(read_particles(path)) for path in window]
     ratios = np.array([_ratios(ellipsoid_of(clump.position, clump.mass)) for clump in earlier])
     return float(np.max(np.abs(ratios - final) / final))

@@ -27,7 +27,7 @@ HEADINGS = {
 }
 """Columns of the printed table."""
 
-DECIMALS = {"M_lr/M_t": 3, "bound": 3, "b/a": 2, "c/a": 2, "c/a ext.": 2, "period [h]": 2}
+DECIMALS = {"M_lr/M_t": 3, "bound": 3, "b/a": 2, "c/a": 2, "c/a ext.": 2, "density [kg/m3]": 0, "period [h]": 2}
 
 NOT_A_SERIES = ("velocity", "angle", "end_time", "seed", "case")
 """Coordinates that do not tell one series of collisions from another."""
@@ -66,7 +66,7 @@ def printed(table: pd.DataFrame) -> str:
     """The table for people: short headings, few digits, a dash for what is not there."""
     shown = table.assign(spin_period=table["spin_period"] / 3600.0).rename(columns=HEADINGS)
     formatters = {name: partial(_text, decimals=DECIMALS.get(name)) for name in shown.columns}
-    return shown.to_string(index=False, formatters=formatters)
+    return shown.to_string(index=False, formatters=formatters, na_rep="-")
 
 
 def reasons(results: xr.Dataset) -> list[str]:

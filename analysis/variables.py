@@ -61,9 +61,9 @@ OUTCOMES = {
         "shortest over longest axis of the largest remnant's convex hull", "1", "inertia tensor of the solid hull"
     ),
     "hull_volume": Variable("volume of the largest remnant's convex hull", "m3"),
-    "box_a": Variable("longest edge of the smallest box around the largest remnant", "m", "particles taken as points"),
-    "box_b": Variable("intermediate edge of the smallest box around the largest remnant", "m", "as box_a"),
-    "box_c": Variable("shortest edge of the smallest box around the largest remnant", "m", "as box_a"),
+    "extent_a": Variable("size of the largest remnant along the longest axis of its hull", "m", "particles as points"),
+    "extent_b": Variable("size of the largest remnant along the intermediate axis of its hull", "m", "as extent_a"),
+    "extent_c": Variable("size of the largest remnant along the shortest axis of its hull", "m", "as extent_a"),
     "bulk_density": Variable(
         "bulk density of the largest remnant", "kg m-3", "mass over pi/6 axis_a axis_b axis_c: too high when thin"
     ),

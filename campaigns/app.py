@@ -3,6 +3,7 @@
 import signal
 import sys
 from collections.abc import Sequence
+from enum import Enum
 from pathlib import Path
 from typing import Annotated
 
@@ -22,6 +23,14 @@ from campaigns.state import JobState, states
 from campaigns.study import Study, find_study, read_study
 from engine.errors import JobError, SceneError
 
+
+class Arch(Enum):
+    """Taichi architectures of the engine."""
+
+    cpu = "cpu"
+    cuda = "cuda"
+
+
 app = typer.Typer(
     help="Run studies of collisions: a study in, a directory of finished jobs out.",
     rich_markup_mode=None,
@@ -38,7 +47,7 @@ Threads = Annotated[
 ]
 Scheduler = Annotated[str | None, typer.Option(help="Address of a running dask scheduler that sees the same files.")]
 Slurm = Annotated[bool, typer.Option("--slurm", help="Run jobs through SLURM, as set up for dask-jobqueue.")]
-Arch = Annotated[str, typer.Option(help="Taichi architecture: cpu or cuda.")]
+Device = Annotated[Arch, typer.Option(help="Where the engine computes.")]
 RetryFailed = Annotated[bool, typer.Option("--retry-failed", help="Run failed jobs once more.")]
 
 DEFAULT_RUNS = Path("runs")
@@ -67,7 +76,7 @@ def run(
     threads_per_job: Threads = None,
     scheduler: Scheduler = None,
     slurm: Slurm = False,
-    arch: Arch = "cpu",
+    arch: Device = Arch.cpu,
     retry_failed: RetryFailed = False,
 ) -> None:
     """Run every unfinished job of a study, then collect the results."""
@@ -80,7 +89,7 @@ def run(
         slots, threads = share_cores(waiting, workers, threads_per_job)
         with connect(Resources(slots, threads, scheduler, slurm)) as client, display(Console()) as show:
             directory.write(campaign)
-            jobs = Run(directory, campaign, client, threads, arch, retry_failed).watch(show)
+            jobs = Run(directory, campaign, client, threads, arch.value, retry_failed).watch(show)
         _finish(directory, jobs, _arguments(study, runs))
     except KeyboardInterrupt:
         raise typer.Exit(_complain(f"stopped; go on with: make resume {_arguments(study, runs)}", 130)) from None

@@ -1,8 +1,10 @@
 """Running a campaign: hand unfinished jobs to the cluster, watch the disk, stop in order."""
 
 import signal
+import sys
 import time
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from dask.distributed import Client, Future
 
@@ -36,8 +38,8 @@ class Run:
     threads: int
     arch: str
     retry_failed: bool
-    _futures: dict[str, Future] = field(default_factory=dict)
-    _outcomes: dict[str, Outcome] = field(default_factory=dict)
+    _futures: dict[Path, Future] = field(default_factory=dict)
+    _outcomes: dict[Path, Outcome] = field(default_factory=dict)
 
     def watch(self, show: Show) -> list[JobState]:
         """Run until no job is left to run and none is being run by another process; how they stand then.
@@ -67,28 +69,29 @@ class Run:
         return [self._explained(job) for job in jobs]
 
     def _submit(self, job: JobState) -> None:
-        untried = job.id not in self._futures and job.id not in self._outcomes
+        untried = job.directory not in self._futures and job.directory not in self._outcomes
         if untried and decide(job.status, self.retry_failed).runs:
-            self._futures[job.id] = self.client.submit(
+            self._futures[job.directory] = self.client.submit(
                 run_job, job.directory, self.threads, self.arch, self.retry_failed, pure=False
             )
 
     def _harvest(self) -> None:
-        for name in [name for name, future in self._futures.items() if future.done()]:
-            outcome = _outcome(self._futures.pop(name))
+        for path in [path for path, future in self._futures.items() if future.done()]:
+            outcome = _outcome(self._futures.pop(path))
             if outcome.code != CLAIMED:
-                self._outcomes[name] = outcome
+                self._outcomes[path] = outcome
 
     def _explained(self, job: JobState) -> JobState:
         """The job with the reason its process gave, where the disk holds none."""
-        outcome = self._outcomes.get(job.id)
+        outcome = self._outcomes.get(job.directory)
         if outcome is None or job.status.state in ("done", "running") or job.status.reason:
             return job
         return replace(job, status=replace(job.status, reason=outcome.reason))
 
     def _stop(self) -> None:
         """End the engines so that each can write its checkpoint."""
-        paths = [self.directory.path / "jobs" / name for name in self._futures]
+        print("stopping: the jobs that run write their checkpoints", file=sys.stderr)
+        paths = list(self._futures)
         self.client.cancel(list(self._futures.values()))
         self.client.run(signal_jobs, paths, signal.SIGTERM)
         deadline = time.monotonic() + STOP_PATIENCE

@@ -3,7 +3,7 @@
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from campaigns.alias import belongs_to
 from campaigns.campaign import Campaign
@@ -42,8 +42,10 @@ def status_of(job_directory: Path) -> Status:
     try:
         _require_own_scene(job_directory)
         return _sound_status(JobDirectory(job_directory))
-    except (JobError, OSError, ValueError, TypeError, ArithmeticError) as error:
+    except JobError as error:
         return Status(state=CORRUPT, reason=" ".join(str(error).split()))
+    except (OSError, ValueError, TypeError, ArithmeticError) as error:
+        return Status(state=CORRUPT, reason=f"{JobDirectory(job_directory).status_file}: damaged: {error}")
 
 
 def _require_own_scene(job_directory: Path) -> None:
@@ -53,9 +55,17 @@ def _require_own_scene(job_directory: Path) -> None:
 
 
 def _sound_status(job: JobDirectory) -> Status:
-    status = _STATUS.validate_python(asdict(job.status()))
+    status = _validated(job.status())
     if status.state not in STATES:
         raise JobError(f"{job.status_file}: unknown state '{status.state}'")
     if status.state == "done" and not job.final.is_file():
         raise JobError(f"{job.final}: missing, though status.json says done")
     return status
+
+
+def _validated(status: Status) -> Status:
+    try:
+        return _STATUS.validate_python(asdict(status))
+    except ValidationError as error:
+        issue = error.errors()[0]
+        raise TypeError(f"'{issue['loc'][0]}': {issue['msg']} (given {issue['input']!r})") from error

@@ -23,14 +23,11 @@ class Clock:
 
     def __init__(self, start: float, end: float, longest_step: float) -> None:
         self.time, self.end, self.pause_time = (ti.field(ti.f64, ()) for _ in range(3))
-        self.dt, self.rate, self.least_rate, self.damping = (ti.field(Real, ()) for _ in range(4))
-        self.step, self.running, self.moved_out, self.fault, self.fault_particle = (
-            ti.field(ti.i32, ()) for _ in range(5)
-        )
-        self.fracturing = ti.field(ti.i32, ())
+        self.dt, self.rate, self.least_rate = (ti.field(Real, ()) for _ in range(3))
+        self.step, self.running, self.moved_out = (ti.field(ti.i32, ()) for _ in range(3))
+        self.fault, self.fault_particle = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.time[None], self.end[None], self.pause_time[None] = start, end, start
         self.least_rate[None] = 1.0 / longest_step
-        self.fracturing[None] = 1
         self.fault_particle[None] = 2**31 - 1
 
     @ti.func

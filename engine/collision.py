@@ -86,7 +86,7 @@ class Collision(Frozen):
         fraction = projectile.mass / (target.mass + projectile.mass)
         return Scene(
             bodies=(_moved(target, start, -fraction), _moved(projectile, start, 1.0 - fraction)),
-            start_time=-start.duration,
+            start_time=-rounded(start.duration),
             end_time=self.end_time,
             seed=self.seed,
             physics=Physics(
@@ -101,6 +101,11 @@ class Collision(Frozen):
 
 def _moved(body: Body, start: Approach, share: float) -> Body:
     """The body at its share of the relative position and velocity."""
-    position = tuple(float(share * value) for value in start.position)
-    velocity = tuple(float(share * value) for value in start.velocity)
+    position = tuple(rounded(share * value) for value in start.position)
+    velocity = tuple(rounded(share * value) for value in start.velocity)
     return body.model_copy(update={"position": position, "velocity": velocity})
+
+
+def rounded(value: float) -> float:
+    """Ten digits of a number: the same collision is then the same scene, and the same job, on every machine."""
+    return float(f"{value:.9e}")

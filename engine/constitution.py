@@ -69,14 +69,13 @@ class Constitution:
             self.table.shear_modulus[i] = material.shear_modulus
 
     @ti.func
-    def update(self, p, L, dt, fracturing):
+    def update(self, p, L, dt):
         """Advance strain, energy, damage and stress of particle p over one step; returns wave speed and diffusivity.
 
         Args:
             p: index of the particle.
             L: velocity gradient [1/s].
             dt: time step [s].
-            fracturing: 0 while bodies settle and damage rests, else 1.
         """
         body = self.particles.body[p]
         m = self.table[body]
@@ -97,8 +96,7 @@ class Constitution:
         self.particles.tau[p] = pack(tau)
         # trapezoidal rule: the work of the mean stress, so that elastic energy does not drift
         self.particles.E[p] += half_work + 0.5 * dt / m.rho0 * ddot(tau, d)
-        if fracturing == 1:
-            self.particles.root[p] = self.fracture.grow(self.particles.root[p], s / J, P, dt, p, body)
+        self.particles.root[p] = self.fracture.grow(self.particles.root[p], s / J, P, dt, p, body)
         return self.wave_speed(c2, body), diffusivity
 
     @ti.func

@@ -1,9 +1,7 @@
 """A scene: the bodies, the parts of physics they obey, and how finely to resolve them. SI units throughout."""
 
-import hashlib
-import json
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
@@ -94,12 +92,10 @@ class Numerics(Frozen):
 
     particles_per_cell: fixes the grid, dx = h * particles_per_cell^(1/3).
     cfl: time step in units of dx / (wave speed + particle speed).
-    settling: duration [s] of the damped settling of the bodies before the start; 0 leaves it out.
     """
 
     particles_per_cell: Positive = 8.0
     cfl: Fraction = 0.3
-    settling: NonNegative = 0.0
 
 
 class Output(Frozen):
@@ -145,14 +141,6 @@ class Scene(Frozen):
         """Grid spacing [m]."""
         return self.spacing * float(self.numerics.particles_per_cell ** (1.0 / 3.0))
 
-    def canonical(self) -> str:
-        """The scene as canonical JSON: one text for one meaning, so that 100 and 100.0 agree."""
-        return json.dumps(self.model_dump(mode="json"), sort_keys=True, indent=1)
-
-    def hash(self) -> str:
-        """SHA-256 of the canonical JSON, as a hex string."""
-        return hashlib.sha256(self.canonical().encode()).hexdigest()
-
 
 def read_scene(path: Path) -> Scene:
     """The scene in a TOML or JSON file.
@@ -173,8 +161,3 @@ def scene_in(directory: Path) -> Scene:
         if (directory / name).is_file():
             return read_scene(directory / name)
     raise SceneError(f"{directory}: holds no scene.json or scene.toml; write the scene to run there first")
-
-
-def dump(scene: Scene) -> dict[str, Any]:
-    """The scene as plain JSON values."""
-    return scene.model_dump(mode="json")

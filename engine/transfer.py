@@ -208,11 +208,10 @@ class Transfer:
     def move(self, p, v, L):
         """Give particle p its new velocity and velocity gradient, and deform it."""
         dx, dt = self.dx[None], self.clock.dt[None]
-        v *= 1.0 - dt * self.clock.damping[None]
         self.particles.x[p] += dt * v
         self.particles.v[p] = v
         self.particles.C[p] = affine_velocity(L, dt)
-        c, diffusivity = self.constitution.update(p, L, dt, self.clock.fracturing[None])
+        c, diffusivity = self.constitution.update(p, L, dt)
         if not self.particles.j[p] > -1.0 or tm.isinf(self.particles.j[p]):
             self.clock.report_fault(FAULT_INVERTED, p)
         wave = (c + v.norm()) / (self.cfl[None] * dx)

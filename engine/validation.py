@@ -1,6 +1,7 @@
 """Strict, frozen input models and errors that name the file, the key and the way out."""
 
 import difflib
+import hashlib
 import json
 import tomllib
 from pathlib import Path
@@ -21,6 +22,14 @@ class Frozen(BaseModel):
     """Base of every input model: immutable, and unknown keys are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
+
+    def canonical(self) -> str:
+        """The values as canonical JSON: one text for one meaning, so that 100 and 100.0 agree."""
+        return json.dumps(self.model_dump(mode="json"), sort_keys=True, indent=1)
+
+    def hash(self) -> str:
+        """SHA-256 of the canonical JSON, as a hex string."""
+        return hashlib.sha256(self.canonical().encode()).hexdigest()
 
 
 def read_table(path: Path) -> dict[str, Any]:

@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib import pyplot as plt
+from matplotlib.lines import Line2D
 
-from analysis.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, Directories, nothing_done, velocity_colours
+from analysis.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, velocity_colours
 from analysis.ledger import drifts, read_history
 from analysis.tables import cells
 from engine.jobdir import JobDirectory
@@ -36,35 +37,37 @@ def conservation(results: xr.Dataset, directories: Directories) -> Any:
     done = table[table["state"] == "done"]
     if done.empty:
         return nothing_done()
-    figure = plt.figure(figsize=(9.2, 4.4), layout="constrained")
-    left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.35))
+    figure = plt.figure(figsize=(10.4, 4.6), layout="constrained")
+    left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.6))
     first = done.iloc[0]
-    _ledger(left.subplots(), read_history(JobDirectory(directories[first["job"]]).history), first)
+    _ledger(left, read_history(JobDirectory(directories[first["job"]]).history), first)
     _drifts(right, done, directories)
     return figure
 
 
-def _ledger(axes: Any, history: xr.Dataset, cell: pd.Series) -> None:
+def _ledger(figure: Any, history: xr.Dataset, cell: pd.Series) -> None:
+    axes = figure.subplots()
     start = float(history["kinetic_energy"][0])
     for name, (label, colour) in LEDGER.items():
         axes.plot(history["time"] / 1000.0, history[name] / start, color=colour, label=label)
     axes.axhline(0.0, color="#cccccc", linewidth=0.7, zorder=0)
-    axes.set(title=f"energy, {cell['velocity']:g} m/s at {cell['angle']:g}°")
+    axes.set(title=f"energies at {cell['velocity']:g} m/s, {cell['angle']:g}°")
     axes.set(xlabel="time after contact [1000 s]", ylabel="energy / kinetic energy at the start")
-    axes.legend(loc="best")
+    figure.legend(loc="outside lower center", ncols=3)
 
 
 def _drifts(figure: Any, done: pd.DataFrame, directories: Directories) -> None:
-    panels = figure.subplots(2, 2, sharex=True).ravel()
+    panels = figure.subplots(2, 2, sharex=True, sharey=True).ravel()
     colours = velocity_colours(done["velocity"])
     for _, cell in done.iterrows():
         job = JobDirectory(directories[cell["job"]])
-        changes = drifts(read_history(job.history), scene_in(job.path))
+        changes = drifts(read_history(job.history), scene_in(job.path)).isel(time=slice(1, None))
         for axes, name in zip(panels, DRIFTS, strict=True):
             size = np.maximum(np.abs(changes[name]), SMALLEST)
-            axes.plot(changes["time"] / 1000.0, size, color=colours[cell["velocity"]], linewidth=0.8)
+            axes.plot(changes["time"] / 1000.0, size, color=colours[cell["velocity"]], linewidth=0.9, alpha=0.8)
     for axes, title in zip(panels, DRIFTS.values(), strict=True):
-        axes.set(title=f"|change of {title}|, relative", yscale="log")
-        axes.tick_params(color=GREY)
-    for axes in panels[2:]:
-        axes.set_xlabel("time after contact [1000 s]")
+        axes.set(title=title, yscale="log")
+    figure.supylabel("size of the relative change since the start", fontsize=9)
+    figure.supxlabel("time after contact [1000 s]", fontsize=9)
+    lines = [Line2D([], [], color=colour, label=f"{velocity:g} m/s") for velocity, colour in colours.items()]
+    figure.legend(handles=lines, loc="outside right center")

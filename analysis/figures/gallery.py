@@ -13,6 +13,14 @@ from analysis.figures.views import Frame, Views, frame_around, views_of
 from analysis.tables import series
 from engine.jobdir import JobDirectory
 
+WIDE, NARROW, GAP, CAPTION = 2.5, 1.7, 0.1, 0.46
+"""Widths of a panel, space between panels, and space for a caption [inch]."""
+
+KEY = (
+    "Above: along the shortest axis; below: edge-on. Blue: target, orange: projectile. "
+    "$M$: mass of the largest remnant over that of the target."
+)
+
 WRAP = 4
 """Pictures in a row when the cells are no full grid of velocity and angle."""
 
@@ -31,10 +39,12 @@ def gallery(results: xr.Dataset, directories: Directories) -> Any:
         return nothing_done()
     views = dict(zip(done, views_of([JobDirectory(directories[job]).final for job in done]), strict=True))
     frame = frame_around(list(views.values()))
-    figure, panels = _grid(len(shown), _columns(shown), frame)
+    columns = _columns(shown)
+    width = NARROW if columns > WRAP and not shown["series"].any() else WIDE
+    figure, panels = _grid(len(shown), columns, width, frame)
     for axes, (_, cell) in zip(panels, shown.iterrows(), strict=False):
         _panel(axes, cell, views.get(cell["job"]), frame)
-    _scale_bar(panels[-_columns(shown)], frame)
+    _scale_bar(panels[-columns], 2.0 * frame.width)
     return figure
 
 
@@ -45,39 +55,34 @@ def _columns(shown: pd.DataFrame) -> int:
     return angles if full and angles > 1 else min(WRAP, len(shown))
 
 
-def _grid(count: int, columns: int, frame: Frame) -> tuple[Any, Any]:
-    """A figure with room for `count` panels, each as wide as the frame and as high as both views and their captions."""
+def _grid(count: int, columns: int, width: float, frame: Frame) -> tuple[Any, Any]:
+    """A figure of `count` panels around the frame, each `width` inches wide, with room for captions."""
     rows = -(-count // columns)
-    width = 2.5 if columns <= WRAP else 1.6
-    height = width * (frame.flat + frame.edge) / frame.width + 0.5
-    figure, panels = plt.subplots(rows, columns, figsize=(width * columns, height * rows), squeeze=False)
-    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=1.0, wspace=0.06, hspace=0.5 / height)
+    height = width * (frame.flat + frame.edge) / frame.width
+    size = (columns * width + (columns - 1) * GAP, rows * height + (rows - 1) * CAPTION)
+    figure, panels = plt.subplots(rows, columns, figsize=size, squeeze=False)
+    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=1.0, wspace=GAP / width, hspace=CAPTION / height)
     for axes in panels.ravel():
         axes.set_axis_off()
-        axes.set(xlim=(-frame.width, frame.width), ylim=(-frame.flat - 2.0 * frame.edge, frame.flat), aspect="equal")
     return figure, panels.ravel()
 
 
 def _panel(axes: Any, cell: pd.Series, views: Views | None, frame: Frame) -> None:
     axes.set_title(_caption(cell), fontsize=7.5, pad=3)
     if views is None:
-        box = Rectangle((0, 0), 1, 1, transform=axes.transAxes, hatch="////", facecolor="white", edgecolor="#dddddd")
-        axes.add_patch(box)
-        axes.text(
-            0.5,
-            0.5,
-            cell["state"],
-            transform=axes.transAxes,
-            ha="center",
-            va="center",
-            color=GREY,
-            backgroundcolor="white",
-        )
+        _missing(axes, cell["state"])
         return
     for found, centre in ((views.flat, 0.0), (views.edge, -frame.flat - frame.edge)):
         left, right, bottom, top = found.extent
-        axes.imshow(found.pixels, extent=(left, right, bottom + centre, top + centre), origin="lower", clip_on=False)
-    axes.set(xlim=(-frame.width, frame.width), ylim=(-frame.flat - 2.0 * frame.edge, frame.flat))
+        place = (left, right, bottom + centre, top + centre)
+        axes.imshow(found.pixels, extent=place, origin="lower", interpolation="hanning")
+    axes.set(xlim=(-frame.width, frame.width), ylim=(-frame.flat - 2.0 * frame.edge, frame.flat), aspect="auto")
+
+
+def _missing(axes: Any, state: str) -> None:
+    whole = {"transform": axes.transAxes}
+    axes.add_patch(Rectangle((0, 0), 1, 1, hatch="////", facecolor="white", edgecolor="#dddddd", **whole))
+    axes.text(0.5, 0.5, state, ha="center", va="center", color=GREY, backgroundcolor="white", **whole)
 
 
 def _caption(cell: pd.Series) -> str:
@@ -87,11 +92,10 @@ def _caption(cell: pd.Series) -> str:
     return f"{place}\n$M$ {cell['mass_ratio']:.2f}   $b/a$ {cell['b_over_a']:.2f}   $c/a$ {cell['c_over_a']:.2f}"
 
 
-def _scale_bar(axes: Any, frame: Frame) -> None:
-    """A bar of a round length below a panel."""
-    length = 10.0 ** np.floor(np.log10(frame.width))
-    left, low = -frame.width, -frame.flat - 2.0 * frame.edge
-    axes.plot([left, left + length], [low, low], color="black", linewidth=2.0, clip_on=False, solid_capstyle="butt")
-    axes.annotate(
-        f"{length / 1000.0:g} km", (left, low), (0, -4), textcoords="offset points", va="top", annotation_clip=False
-    )
+def _scale_bar(axes: Any, width: float) -> None:
+    """A bar of a round length below a panel of the given width [m]."""
+    power = 10.0 ** np.floor(np.log10(0.3 * width))
+    length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= 0.3 * width)
+    bar = {"transform": axes.transAxes, "clip_on": False}
+    axes.plot([0.0, length / width], [-0.02, -0.02], color="black", linewidth=2.0, solid_capstyle="butt", **bar)
+    axes.text(0.0, -0.06, f"{length / 1000.0:g} km. {KEY}", va="top", fontsize=7.5, **bar)

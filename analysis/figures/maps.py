@@ -7,6 +7,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib import pyplot as plt
 from matplotlib.patches import Rectangle
+from matplotlib.patheffects import withStroke
 
 from analysis.figures.style import GREY
 from analysis.tables import series
@@ -26,30 +27,33 @@ def maps(results: xr.Dataset) -> Any:
     size = (3 * max(2.4, 0.42 * widest + 1.0), len(groups) * max(2.2, 0.36 * tallest + 1.0))
     figure, panels = plt.subplots(len(groups), 3, figsize=size, squeeze=False, layout="constrained")
     for row, (title, table) in zip(panels, groups, strict=True):
-        for axes, (name, (label, top)) in zip(row, PANELS.items(), strict=True):
-            _map(axes, table, name, top)
-            axes.set_title(label)
+        for axes, (name, (_, highest)) in zip(row, PANELS.items(), strict=True):
+            _map(axes, table, name, highest)
         row[0].set_ylabel(f"{title}\nvelocity at contact [m/s]".strip())
-    for axes in panels[-1]:
-        axes.set_xlabel("impact angle [deg]")
+    for top, bottom, (label, _) in zip(panels[0], panels[-1], PANELS.values(), strict=True):
+        top.set_title(label)
+        bottom.set_xlabel("impact angle [deg]")
     return figure
 
 
-def _map(axes: Any, table: pd.DataFrame, name: str, top: float) -> None:
+def _map(axes: Any, table: pd.DataFrame, name: str, highest: float) -> None:
     values = table.pivot_table(index="velocity", columns="angle", values=name, aggfunc="mean", dropna=False)
     states = table.pivot_table(index="velocity", columns="angle", values="state", aggfunc=_least_done, dropna=False)
     states = states.reindex(index=values.index, columns=values.columns)
     colours = plt.get_cmap("cividis")
-    axes.imshow(values.to_numpy(float), cmap=colours, vmin=0.0, vmax=top, aspect="auto", origin="lower")
+    axes.imshow(values.to_numpy(float), cmap=colours, vmin=0.0, vmax=highest, aspect="auto", origin="lower")
     for (row, column), value in np.ndenumerate(values.to_numpy(float)):
         if np.isfinite(value):
-            ink = "white" if value < 0.55 * top else "black"
+            ink = "white" if value < 0.55 * highest else "black"
             axes.text(column, row, f"{value:.2f}", ha="center", va="center", color=ink, fontsize=7.5)
         else:
             _missing(axes, column, row, states.iloc[row, column])
     axes.set_xticks(range(values.shape[1]), [f"{angle:g}" for angle in values.columns])
     axes.set_yticks(range(values.shape[0]), [f"{velocity:g}" for velocity in values.index])
-    axes.tick_params(length=0)
+    axes.set_xticks(np.arange(0.5, values.shape[1] - 1), minor=True)
+    axes.set_yticks(np.arange(0.5, values.shape[0] - 1), minor=True)
+    axes.grid(which="minor", color="white", linewidth=1.2)
+    axes.tick_params(which="both", length=0)
     axes.spines[:].set_visible(False)
 
 
@@ -61,7 +65,8 @@ def _missing(axes: Any, column: int, row: int, state: object) -> None:
         (column - 0.5, row - 0.5), 1.0, 1.0, hatch="////", facecolor="white", edgecolor="#cccccc", linewidth=0
     )
     axes.add_patch(box)
-    axes.text(column, row, state, ha="center", va="center", color=GREY, fontsize=6, backgroundcolor="white")
+    halo = [withStroke(linewidth=2.5, foreground="white")]
+    axes.text(column, row, state, ha="center", va="center", color=GREY, fontsize=5.5, path_effects=halo)
 
 
 def _least_done(states: pd.Series) -> str:

@@ -51,8 +51,10 @@ def velocity_colours(velocities: Any) -> dict[float, Any]:
 
 def nothing_done() -> Any:
     """A figure that says why it shows nothing."""
-    figure = plt.figure(figsize=(6.0, 2.0))
-    figure.text(0.5, 0.5, "no job of this campaign is done yet", ha="center", va="center", color=GREY, fontsize=11)
+    figure, axes = plt.subplots(figsize=(6.0, 2.0))
+    axes.set(xticks=[], yticks=[])
+    axes.spines[:].set(visible=True, color="#cccccc")
+    axes.text(0.5, 0.5, "no job of this campaign is done yet", ha="center", va="center", color=GREY, fontsize=11)
     return figure
 
 

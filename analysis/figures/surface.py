@@ -49,7 +49,8 @@ def picture(view: Array, body: NDArray[np.int64], spacing: float, pixel: float) 
     width, height = np.ceil((view[:, :2].max(axis=0) + 2.0 * radius - corner) / pixel).astype(int)
     depth, nearest = _nearest(view, (view[:, :2] - corner) / pixel, radius, pixel, (height, width))
     solid = nearest >= 0
-    light = LIGHT.hillshade(_smooth(depth, solid, SMOOTHING * spacing / pixel), dx=pixel, dy=pixel)
+    # hillshade takes the first row for the top one; here it is the bottom one.
+    light = LIGHT.hillshade(_smooth(depth, solid, SMOOTHING * spacing / pixel), dx=pixel, dy=-pixel)
     colours = ROCKS[body[nearest] % len(ROCKS)] * (0.25 + 0.8 * light[..., None])
     right, top = corner + pixel * np.array([width, height])
     pixels = np.dstack([colours.clip(0.0, 1.0), solid])

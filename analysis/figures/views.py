@@ -10,8 +10,11 @@ from analysis.figures.surface import Picture, picture
 from analysis.particles import Particles, read_particles
 from analysis.shape import ellipsoid_of
 
-PIXELS = 360
-"""Pixels across the longest remnant."""
+PIXELS = 720
+"""Pixels across the longest remnant, at most."""
+
+FINEST = 12.0
+"""Pixels across a particle spacing, at most: more would only show the balls."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,8 @@ def views_of(finals: list[Path]) -> list[Views]:
     """
     remnants = [_aligned(largest_clump(read_particles(path))) for path in finals]
     longest = max(float(np.ptp(remnant.position[:, 0])) + remnant.spacing for remnant in remnants)
-    return [_views(remnant, longest / PIXELS) for remnant in remnants]
+    finest = min(remnant.spacing for remnant in remnants) / FINEST
+    return [_views(remnant, max(longest / PIXELS, finest)) for remnant in remnants]
 
 
 def frame_around(views: list[Views]) -> Frame:

@@ -8,7 +8,6 @@ import xarray as xr
 
 from engine.collision import Collision
 from engine.jobdir import JobDirectory, Status
-from engine.scene import dump
 from engine.storage import write_dataset, write_json
 
 RHO0 = 2700.0
@@ -44,7 +43,7 @@ def particles(position: np.ndarray, spacing: float, velocity: np.ndarray | None 
 
 
 def history(times: np.ndarray, drift: float = 0.0) -> xr.Dataset:
-    """Conserved quantities that drift linearly by `drift` of 2 J, 2 kg m/s, ... over the run."""
+    """Conserved quantities whose drift grows to `drift` of 4e18 kg, 1e20 kg m/s, 1e25 kg m2/s and 5e21 J."""
     share = np.linspace(0.0, drift, len(times))
     scalar = {
         "mass": 4.0e18 * (1 + share),
@@ -75,7 +74,7 @@ def write_job(
     """A job directory in a state, with a final.nc when given one."""
     path.mkdir(parents=True)
     job = JobDirectory(path)
-    write_json(path / "scene.json", dump(collision.scene()))
+    XX
     job.write_status(Status(state=state, reason=reason, step=100, wall_time=12.5))
     write_dataset(job.history, history(np.linspace(-500.0, collision.end_time, 20), 1e-9))
     if final is not None:

@@ -1,0 +1,208 @@
+"""The data set of a campaign: every kind of job, coordinates, attributes, round trip."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from analysis.collect import collect
+from analysis.variables import OUTCOMES, TEXTS
+from engine.collision import Collision
+from engine.errors import SceneError
+from engine.storage import read_dataset, write_json
+from tests.analysis.fake_jobs import (
+    RHO0,
+    history,
+    lattice_ellipsoid,
+    particles,
+    write_campaign,
+    write_dataset,
+    write_job,
+)
+
+AXES = (1.2e5, 1e5, 9e4)
+POINTS, SPACING = lattice_ellipsoid(AXES, 400)
+OMEGA = np.array([0.0, 0.0, 3e-4])
+
+
+def remnant(**attrs: Any) -> xr.Dataset:
+    """An ellipsoid that spins, and one particle that leaves it at 500 m/s."""
+    position = np.concatenate([POINTS, [[5e5, 0.0, 0.0]]])
+    velocity = np.concatenate([np.cross(OMEGA, POINTS), [[500.0, 0.0, 0.0]]])
+    return particles(position, SPACING, velocity, **{"time": 900.0, **attrs})
+
+
+def collision(**settings: Any) -> Collision:
+    return Collision(**{"velocity": 200.0, "angle": 15.0, "particles": 400, "end_time": 1000.0, **settings})
+
+
+def one_job(campaign: Path, **job: Any) -> Path:
+    """A campaign of one done job; returns the job's directory."""
+    write_campaign(
+        campaign, {"velocity": [200.0], "angle": [15.0]}, [({"velocity": 200.0, "angle": 15.0}, collision())]
+    )
+    write_job(campaign / "jobs/0", collision(), **{"final": remnant(), **job})
+    return campaign / "jobs/0"
+
+
+def test_a_done_job_is_measured(tmp_path: Path) -> None:
+    one_job(tmp_path)
+    cell = collect(tmp_path).isel(velocity=0, angle=0)
+    target = 4.0 / 3.0 * np.pi * RHO0 * 5e4**3
+    assert cell["state"] == "done" and cell["reason"] == "" and cell["job"] == "0"
+    np.testing.assert_allclose(cell["mass_ratio"], len(POINTS) * RHO0 * SPACING**3 / target)
+    np.testing.assert_allclose(cell["second_mass_ratio"], RHO0 * SPACING**3 / target)
+    np.testing.assert_allclose(cell["bound_mass_ratio"], cell["mass_ratio"])
+    np.testing.assert_allclose([cell[f"axis_{name}"] for name in "abc"], AXES, rtol=0.03)
+    np.testing.assert_allclose(cell["spin_period"], 2.0 * np.pi / 3e-4, rtol=1e-6)
+    np.testing.assert_allclose(cell["bulk_density"], RHO0, rtol=0.03)
+    assert cell["clumps"] == 2.0 and cell["damaged_fraction"] == 1.0 and cell["J_p50"] == 1.0
+    assert cell["steps"] == 100.0 and cell["wall_time"] == 12.5 and cell["time_after_contact"] == 900.0
+    assert cell["largest_thin"] == 0.0 and np.isnan(cell["settled"])
+
+
+def test_a_thin_remnant_is_flagged(tmp_path: Path) -> None:
+    points, spacing = lattice_ellipsoid((3e5, 2e5, 3e4), 400)
+    one_job(tmp_path, final=particles(points, spacing, time=900.0))
+    cell = collect(tmp_path).isel(velocity=0, angle=0)
+    assert cell["largest_thin"] == 1.0
+    assert cell["c_over_a_extended"] > cell["c_over_a"]
+
+
+def truncate(job: Path) -> None:
+    whole = (job / "final.nc").read_bytes()
+    (job / "final.nc").write_bytes(whole[: len(whole) // 2])
+
+
+def make_nan(job: Path) -> None:
+    broken = remnant()
+    broken["velocity"][3, 1] = np.nan
+    write_dataset(job / "final.nc", broken)
+
+
+FAULTS = {
+    "truncated": (truncate, "corrupt", "final.nc"),
+    "gone": (lambda job: (job / "final.nc").unlink(), "corrupt", "final.nc"),
+    "not finite": (make_nan, "failed", "not finite"),
+    "no damage": (lambda job: write_dataset(job / "final.nc", remnant().drop_vars("damage")), "corrupt", "damage"),
+    "no particles": (
+        lambda job: write_dataset(job / "final.nc", remnant().isel(particle=slice(0, 0))),
+        "corrupt",
+        "no particle",
+    ),
+    "no spacing": (
+        lambda job: write_dataset(job / "final.nc", remnant().assign_attrs(spacing="x")),
+        "corrupt",
+        "final.nc",
+    ),
+    "other physics": (lambda job: write_dataset(job / "final.nc", remnant(physics_version=7)), "corrupt", "version 7"),
+    "status": (lambda job: (job / "status.json").write_text("{"), "corrupt", "status.json"),
+    "status of a list": (lambda job: (job / "status.json").write_text("[]"), "corrupt", "status.json"),
+    "scene": (lambda job: (job / "scene.json").write_text("{}"), "corrupt", "scene.json"),
+    "no history": (lambda job: (job / "history.nc").unlink(), "corrupt", "history.nc"),
+    "short history": (
+        lambda job: write_dataset(job / "history.nc", history(np.zeros(2)).drop_vars("mass")),
+        "corrupt",
+        "lacks mass",
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_damaged_job_gives_nan_and_its_reason(tmp_path: Path, fault: str) -> None:
+    damage, state, reason = FAULTS[fault]
+    damage(one_job(tmp_path))
+    cell = collect(tmp_path).isel(velocity=0, angle=0)
+    assert cell["state"] == state
+    assert reason in str(cell["reason"].item()) and "\n" not in str(cell["reason"].item())
+    assert np.isnan([cell[name] for name in OUTCOMES]).all()
+
+
+@pytest.fixture
+def grid(tmp_path: Path) -> Path:
+    """A grid whose jobs are done, failed, interrupted, pending, corrupt, and one cell without a job."""
+    cells = [(v, a) for v in (100.0, 200.0) for a in (5.0, 15.0, 25.0)]
+    jobs = [({"velocity": v, "angle": a}, collision(velocity=v, angle=a)) for v, a in cells]
+    write_campaign(tmp_path, {"velocity": [100.0, 200.0], "angle": [5, 15, 25]}, jobs[:5])
+    write_job(tmp_path / "jobs/0", jobs[0][1], remnant())
+    write_job(tmp_path / "jobs/1", jobs[1][1], None, "failed", "dt fell below\n1e-9 s")
+    write_job(tmp_path / "jobs/2", jobs[2][1], None, "running")
+    status = tmp_path / "jobs/2/status.json"
+    write_json(status, json.loads(status.read_text()) | {"process_start": 0.0})
+    write_job(tmp_path / "jobs/4", jobs[4][1], remnant())
+    truncate(tmp_path / "jobs/4")
+    return tmp_path
+
+
+def test_every_cell_carries_its_state(grid: Path) -> None:
+    results = collect(grid)
+    assert results["state"].to_numpy().tolist() == [
+        ["done", "failed", "interrupted"],
+        ["pending", "corrupt", "missing"],
+    ]
+    assert results["reason"].sel(velocity=100, angle=15) == "dt fell below 1e-9 s"
+    assert np.isfinite(results["mass_ratio"]).to_numpy().tolist() == [[True, False, False], [False] * 3]
+
+
+def test_results_are_cf_and_come_back_as_written(grid: Path) -> None:
+    results = collect(grid)
+    again = read_dataset(grid / "results.nc")
+    xr.testing.assert_equal(results, again)
+    assert set(again.data_vars) == {*OUTCOMES, *TEXTS}
+    for name in (*OUTCOMES, "velocity", "angle", "end_time"):
+        assert again[name].attrs["units"] and again[name].attrs["long_name"], name
+    assert again.attrs["Conventions"].startswith("CF-")
+    assert again.attrs["parameter_set"] == "sugiura2018" and again.attrs["material.rho0"] == RHO0
+    assert again.attrs["viscosity"] == "none" and again.attrs["physics_version"] == 1
+    assert "velocity" not in again.attrs
+
+
+def test_collecting_twice_gives_the_same_values(grid: Path) -> None:
+    xr.testing.assert_identical(collect(grid), collect(grid))
+
+
+def test_cases_have_their_parameters_as_coordinates(tmp_path: Path) -> None:
+    cases = {
+        "slow": collision(velocity=100.0, end_time=1500.0),
+        "thick": collision(viscosity={"shear": 1e5}),
+    }
+    write_campaign(tmp_path, {"case": list(cases)}, [({"case": name}, case) for name, case in cases.items()])
+    write_job(tmp_path / "jobs/1", cases["thick"], remnant())
+    collect(tmp_path)
+    results = read_dataset(tmp_path / "results.nc")
+    assert results.sizes == {"case": 2}
+    assert results["velocity"].sel(case="slow") == 100.0 and results["end_time"].to_numpy().tolist() == [1500.0, 1000.0]
+    assert results["angle"].dims == ("case",) and results["angle"].attrs["units"] == "degree"
+    np.testing.assert_array_equal(results["viscosity.shear"], [np.nan, 1e5])
+    assert np.isfinite(results["b_over_a"]).to_numpy().tolist() == [False, True]
+
+
+def test_further_axes_keep_their_names(tmp_path: Path) -> None:
+    jobs = [
+        ({"viscosity.shear": nu, "parameter_set": name}, collision(viscosity={"shear": nu}, parameter_set=name))
+        for nu in (0.0, 1e5)
+        for name in ("talk", "sugiura2018")
+    ]
+    write_campaign(tmp_path, {"viscosity.shear": [0.0, 1e5], "parameter_set": ["talk", "sugiura2018"]}, jobs)
+    collect(tmp_path)
+    results = read_dataset(tmp_path / "results.nc")
+    assert dict(results.sizes) == {"viscosity.shear": 2, "parameter_set": 2}
+    assert results["job"].sel({"viscosity.shear": 1e5, "parameter_set": "talk"}) == "2"
+    assert results["velocity"].dims == ("viscosity.shear", "parameter_set")
+
+
+def test_a_directory_without_a_campaign_is_named(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"holds no campaign\.json"):
+        collect(tmp_path)
+    write_json(tmp_path / "campaign.json", {"name": "x"})
+    with pytest.raises(SceneError, match=r"campaign\.json: missing key 'physics_version'"):
+        collect(tmp_path)
+
+
+def test_a_job_off_the_axes_is_refused(tmp_path: Path) -> None:
+    write_campaign(tmp_path, {"angle": [5.0]}, [({"angle": 15.0}, collision())])
+    with pytest.raises(SceneError, match="job '0' has no place on the axis 'angle'"):
+        collect(tmp_path)

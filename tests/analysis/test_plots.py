@@ -1,0 +1,148 @@
+"""Tables, figures and the command line, for every layout a study can have."""
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from analysis.__main__ import app, main
+from analysis.collect import collect
+from analysis.figures.surface import picture
+from analysis.plots import plots
+from analysis.tables import printed, reasons, series, shape_table
+from engine.collision import Collision
+from engine.storage import write_dataset
+from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
+
+FIGURES = ("shape_vs_angle", "maps", "remnants", "conservation")
+
+
+def collision(**settings: Any) -> Collision:
+    nested = {"viscosity": {"shear": settings.pop("viscosity.shear")}} if "viscosity.shear" in settings else {}
+    return Collision(**{"velocity": 200.0, "angle": 15.0, "particles": 200, "end_time": 1000.0, **nested, **settings})
+
+
+def campaign(directory: Path, coords: dict[str, list[Any]], cells: list[dict[str, Any]], done: int) -> Path:
+    """A campaign of the given cells whose first `done` jobs are done; remnants of later jobs are longer."""
+    write_campaign(directory, coords, [(cell, collision(**cell)) for cell in cells])
+    for number, cell in enumerate(cells[:done]):
+        points, spacing = lattice_ellipsoid(((1.0 + 0.4 * number) * 1e5, 1e5, 8e4), 150)
+        write_job(directory / f"jobs/{number}", collision(**cell), particles(points, spacing, time=900.0))
+    return directory
+
+
+def grid(coords: dict[str, list[Any]]) -> list[dict[str, Any]]:
+    frame = pd.MultiIndex.from_product(list(coords.values()), names=list(coords)).to_frame(index=False)
+    return [{str(key): value for key, value in row.items()} for row in frame.to_dict("records")]
+
+
+LAYOUTS: dict[str, tuple[dict[str, list[Any]], int]] = {
+    "grid": ({"velocity": [100.0, 200.0], "angle": [5.0, 15.0, 25.0]}, 4),
+    "one angle": ({"velocity": [100.0, 200.0], "angle": [5.0]}, 2),
+    "seeds": ({"angle": [5.0, 15.0], "seed": [1, 2]}, 4),
+    "another axis": ({"viscosity.shear": [0.0, 1e5]}, 2),
+    "nothing done": ({"velocity": [100.0], "angle": [5.0, 15.0]}, 0),
+}
+
+
+def check_figures(directory: Path) -> None:
+    for name in FIGURES:
+        image = matplotlib.image.imread(directory / f"figures/{name}.png")
+        assert image.shape[0] > 150 and image.shape[1] > 300, name
+        assert image[..., :3].std() > 0.01, name
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_layout_has_its_table_and_figures(tmp_path: Path, layout: str) -> None:
+    coords, done = LAYOUTS[layout]
+    cells = grid(coords)
+    results, written = plots(campaign(tmp_path, coords, cells, done))
+    assert {path.name for path in written} == {"shape_table.csv", *(f"{name}.png" for name in FIGURES)}
+    check_figures(tmp_path)
+    table = pd.read_csv(tmp_path / "shape_table.csv")
+    assert len(table) == len(cells) and table["b_over_a"].notna().sum() == done
+    assert len(printed(shape_table(results)).splitlines()) == len(cells) + 1
+
+
+def test_cases_have_a_row_each_and_figures(tmp_path: Path) -> None:
+    jobs = [("a", collision(angle=5.0)), ("b", collision(angle=15.0)), ("c", collision(velocity=300.0, angle=25.0))]
+    write_campaign(tmp_path, {"case": ["a", "b", "c"]}, [({"case": name}, case) for name, case in jobs])
+    points, spacing = lattice_ellipsoid((2e5, 1e5, 8e4), 150)
+    for number in (0, 2):
+        write_job(tmp_path / f"jobs/{number}", jobs[number][1], particles(points, spacing, time=900.0))
+    results, _ = plots(tmp_path)
+    check_figures(tmp_path)
+    table = shape_table(results)
+    assert table["case"].tolist() == ["a", "b", "c"] and table["velocity"].tolist() == [200.0, 200.0, 300.0]
+
+
+def test_the_printed_table_shows_a_dash_for_what_is_not_there(tmp_path: Path) -> None:
+    coords = {"velocity": [100.0], "angle": [5.0, 15.0]}
+    lines = printed(shape_table(collect(campaign(tmp_path, coords, grid(coords), 1)))).splitlines()
+    assert "M_lr/M_t" in lines[0] and "nan" not in "".join(lines).lower()
+    assert lines[1].split()[-1] == "done"
+    assert lines[2].split()[2:-1] == ["-"] * 11 and lines[2].split()[-1] == "pending"
+
+
+def test_series_are_told_apart_by_everything_but_velocity_angle_and_seed(tmp_path: Path) -> None:
+    coords = {"velocity": [100.0, 200.0], "viscosity.shear": [0.0, 1e5], "seed": [1, 2]}
+    groups = list(series(collect(campaign(tmp_path, coords, grid(coords), 0))))
+    assert [name for name, _ in groups] == ["viscosity.shear 0", "viscosity.shear 100000"]
+    assert [len(rows) for _, rows in groups] == [4, 4]
+
+
+def test_reasons_name_the_job(tmp_path: Path) -> None:
+    coords = {"velocity": [100.0], "angle": [5.0, 15.0]}
+    campaign(tmp_path, coords, grid(coords), 1)
+    write_job(tmp_path / "jobs/1", collision(), None, "failed", "dt too small")
+    assert reasons(collect(tmp_path)) == ["1: failed: dt too small"]
+
+
+def test_a_picture_shows_the_nearest_body() -> None:
+    view = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 5.0], [10.0, 0.0, 0.0]])
+    found = picture(view, np.array([0, 1, 0]), 1.0, 0.1)
+    left, right, bottom, top = found.extent
+
+    def at(x: float, y: float) -> np.ndarray:
+        height, width = found.pixels.shape[:2]
+        return found.pixels[int((y - bottom) / (top - bottom) * height), int((x - left) / (right - left) * width)]
+
+    assert at(0.0, 0.0)[0] > at(0.0, 0.0)[2] and at(10.0, 0.0)[2] > at(10.0, 0.0)[0]
+    assert at(5.0, 0.0)[3] == 0 and at(0.0, 0.0)[3] == 255
+
+
+def test_the_command_line_prints_the_table_and_says_when_nothing_is_done(tmp_path: Path) -> None:
+    coords = {"velocity": [100.0], "angle": [5.0]}
+    told = CliRunner().invoke(app, ["plots", str(campaign(tmp_path, coords, grid(coords), 0))])
+    assert told.exit_code == 0
+    assert "pending" in told.output and "no job of this campaign is done yet" in told.output
+
+
+def test_the_command_line_prints_one_remnant_even_before_it_is_done(tmp_path: Path) -> None:
+    coords = {"velocity": [100.0], "angle": [5.0]}
+    job = campaign(tmp_path, coords, grid(coords), 1) / "jobs/0"
+    told = CliRunner().invoke(app, ["remnant", str(job)])
+    assert told.exit_code == 0 and "b_over_a" in told.output and "not done" not in told.output
+    (job / "final.nc").unlink()
+    (job / "snapshots").mkdir()
+    points, spacing = lattice_ellipsoid((2e5, 1e5, 8e4), 150)
+    for time in (300.0, 400.0):
+        write_dataset(job / f"snapshots/{time:.3f}.nc", particles(points, spacing, time=time))
+    told = CliRunner().invoke(app, ["remnant", str(job)])
+    assert "not done: last snapshot, 400 s after contact" in told.output
+
+
+@pytest.mark.parametrize("command", ["plots", "remnant"])
+def test_errors_are_one_plain_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    monkeypatch.setattr("sys.argv", ["analysis", command, str(tmp_path / "nowhere")])
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    assert stopped.value.code == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and "nowhere" in told

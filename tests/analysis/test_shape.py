@@ -1,0 +1,73 @@
+"""The ellipsoid of a clump against bodies of known shape."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from analysis.shape import bulk_density, ellipsoid_of
+from tests.analysis.fake_jobs import RHO0, lattice_ellipsoid
+
+ratio = st.floats(0.15, 1.0)
+
+
+@settings(max_examples=25, deadline=None)
+@given(b=ratio, c=ratio, seed=st.integers(0, 10**6))
+def test_axes_of_a_lattice_filled_ellipsoid_in_any_position(b: float, c: float, seed: int) -> None:
+    axes = np.sort([1.5e5, 1.5e5 * b, 1.5e5 * c])[::-1]
+    points, spacing = lattice_ellipsoid((axes[0], axes[1], axes[2]), 4000, seed)
+    turned = Rotation.random(random_state=seed).apply(points) + np.array([3e6, -2e6, 1e5])
+    mass = np.full(len(points), RHO0 * spacing**3)
+    found = ellipsoid_of(turned, mass)
+    # The surface of a lattice body is rough by a share of a spacing, independently over its area.
+    np.testing.assert_allclose(found.axes, axes, rtol=(spacing / axes[2]) ** 1.5)
+    np.testing.assert_allclose(
+        bulk_density(float(mass.sum()), found.volume), RHO0, rtol=2.0 * (spacing / axes[2]) ** 1.5
+    )
+
+
+def test_principal_directions_are_those_of_the_body() -> None:
+    points, _ = lattice_ellipsoid((4.0, 2.0, 1.0), 4000)
+    turn = Rotation.from_euler("xyz", [0.3, -0.7, 1.1])
+    found = ellipsoid_of(turn.apply(points), np.ones(len(points)))
+    np.testing.assert_allclose(np.abs(found.directions @ turn.as_matrix()), np.eye(3), atol=0.03)
+    np.testing.assert_allclose(np.linalg.det(found.directions), 1.0)
+
+
+def test_six_points_have_the_axes_of_the_formula() -> None:
+    points = np.concatenate([np.diag([3.0, 2.0, 1.0]), -np.diag([3.0, 2.0, 1.0])])
+    # I1 + I2 - I3 = 2 sum m x^2 along each axis, with sum m x^2 = 2 x^2 and M = 6.
+    np.testing.assert_allclose(
+        ellipsoid_of(points, np.ones(6)).axes, np.sqrt(10 * 2 * 2 / 6) * np.array([3.0, 2.0, 1.0])
+    )
+
+
+def test_a_sphere_is_round() -> None:
+    points, _ = lattice_ellipsoid((1e5, 1e5, 1e5), 20000)
+    found = ellipsoid_of(points, np.ones(len(points)))
+    assert 0.99 < found.c_over_a <= found.b_over_a <= 1.0
+
+
+def test_the_size_of_particles_adds_its_second_moment() -> None:
+    points, spacing = lattice_ellipsoid((8.0, 4.0, 1.0), 500)
+    mass = np.full(len(points), 7.0)
+    thin, thick = ellipsoid_of(points, mass), ellipsoid_of(points, mass, spacing)
+    np.testing.assert_allclose(thick.axes**2, thin.axes**2 + 20.0 * spacing**2 / 12.0)
+    np.testing.assert_allclose(ellipsoid_of(np.zeros((1, 3)), np.ones(1), 3.0).axes, np.sqrt(20.0 / 12.0) * 3.0)
+
+
+def test_one_point_has_no_shape() -> None:
+    found = ellipsoid_of(np.array([[5.0, 6.0, 7.0]]), np.ones(1))
+    assert found.axes.tolist() == [0.0, 0.0, 0.0]
+    assert np.isnan([found.b_over_a, found.c_over_a, bulk_density(1.0, found.volume)]).all()
+
+
+def test_points_on_a_line_and_in_a_plane_have_no_thickness() -> None:
+    turn = Rotation.from_euler("xyz", [0.4, 1.0, -0.2])
+    random = np.random.default_rng(2)
+    for extent in ([1e5, 0, 0], [1e5, 5e4, 0]):
+        points = turn.apply(random.uniform(-1.0, 1.0, (50, 3)) * extent) + 1e6
+        found = ellipsoid_of(points, np.ones(50))
+        assert found.c_over_a == 0.0
+        assert (found.b_over_a > 0.0) == (extent[1] > 0.0)
+        assert np.isnan(bulk_density(1.0, found.volume))

@@ -1,0 +1,160 @@
+"""Every wrong input is one clear line per mistake, exit code 2, and nothing written."""
+
+import json
+
+import pytest
+
+GRID = "[axes]\nvelocity = [100, 200]\nangle = [5]\n"
+HEAD = 'name = "small"\n'
+
+BAD_STUDIES = {
+    "misspelt key of the study": (HEAD + "descripton = 'x'\n" + GRID, ["descripton", "did you mean 'description'"]),
+    "misspelt setting": (HEAD + "[collision]\nraduis = 1e4\n" + GRID, ["collision", "raduis", "did you mean 'radius'"]),
+    "misspelt nested setting": (
+        HEAD + "[collision.numerics]\nclf = 0.3\n" + GRID,
+        ["numerics.clf", "did you mean 'cfl'"],
+    ),
+    "misspelt axis": (HEAD + "[axes]\nvelocty = [100]\nangle = [5]\n", ["axes.velocty", "did you mean 'velocity'"]),
+    "negative radius": (HEAD + "[collision]\nradius = -5.0\n" + GRID, ["'radius'", "greater than 0", "-5.0"]),
+    "steep angle": (HEAD + "[axes]\nvelocity = [100]\nangle = [95]\n", ["'angle'", "90", "95"]),
+    "negative angle": (HEAD + "[axes]\nvelocity = [100]\nangle = [-1]\n", ["'angle'", "0", "-1"]),
+    "no velocity": (HEAD + "[axes]\nvelocity = [0]\nangle = [5]\n", ["'velocity'", "greater than 0"]),
+    "infinite velocity": (HEAD + "[axes]\nvelocity = [inf]\nangle = [5]\n", ["'velocity'", "finite"]),
+    "word as velocity": (HEAD + "[axes]\nvelocity = ['fast']\nangle = [5]\n", ["'velocity'", "number", "fast"]),
+    "velocity without orbit": (HEAD + "[axes]\nvelocity = [1e-300]\nangle = [5]\n", ["no scene can be built"]),
+    "no particles": (HEAD + "[collision]\nparticles = 0\n" + GRID, ["'particles'", "1", "0"]),
+    "half a particle": (HEAD + "[collision]\nparticles = 10.5\n" + GRID, ["'particles'", "10.5"]),
+    "ends before contact": (HEAD + "[collision]\nend_time = -1\n" + GRID, ["end_time", "-1"]),
+    "unknown parameter set": (
+        HEAD + "[collision]\nparameter_set = 'tlak'\n" + GRID,
+        ["unknown parameter_set 'tlak'", "did you mean 'talk'"],
+    ),
+    "missing angle": (HEAD + "[axes]\nvelocity = [100]\n", ["missing key 'angle'"]),
+    "missing name": (GRID, ["missing key 'name'"]),
+    "name that leaves the directory": ("name = '../up'\n" + GRID, ["'name'", "../up"]),
+    "empty axis": (HEAD + "[axes]\nvelocity = []\nangle = [5]\n", ["axes.velocity", "at least one"]),
+    "no axes": (HEAD + "[axes]\n", ["'axes' is empty"]),
+    "single value as axis": (HEAD + "[axes]\nvelocity = 100\nangle = [5]\n", ["axes.velocity", "list", "100"]),
+    "repeated value": (HEAD + "[axes]\nvelocity = [100, 100.0]\nangle = [5]\n", ["axes.velocity", "twice"]),
+    "repeated value as text": (
+        HEAD + "[axes]\nvelocity = [100, '100']\nangle = [5]\n",
+        ["velocity 100.0", "same simulation"],
+    ),
+    "axis without effect": (
+        HEAD + "[collision]\nfriction = 0.5\n[collision.fracture]\nflaws = 'covered'\n"
+        "[axes]\nvelocity = [100]\nangle = [5]\nparameter_set = ['talk', 'sugiura2018']\n",
+        ["talk", "sugiura2018", "same simulation"],
+    ),
+    "table as axis": (HEAD + "[axes]\nvelocity = [100]\nangle = [5]\nviscosity = [1]\n", ["table", "viscosity.shear"]),
+    "lists as values": (HEAD + "[axes]\nvelocity = [[100]]\nangle = [5]\n", ["axes.velocity", "single values"]),
+    "axes and cases": (
+        HEAD + GRID + "[[cases]]\nvelocity = 100\nangle = 5\n",
+        ["either [axes]", "or [[cases]]"],
+    ),
+    "neither axes nor cases": (HEAD, ["either [axes]", "or [[cases]]"]),
+    "empty cases": (HEAD + "cases = []\n", ["'cases' is empty"]),
+    "misspelt case": (HEAD + "[[cases]]\nvelocity = 100\nangel = 5\n", ["case 1", "did you mean 'angle'"]),
+    "repeated case": (
+        HEAD + "[collision]\nangle = 5\n[[cases]]\nvelocity = 100\n[[cases]]\nvelocity = 100.0\nangle = 5.0\n",
+        ["same simulation"],
+    ),
+    "no TOML": ("name = small", ["not valid TOML"]),
+    "no text": ("name = '\x00'", ["not valid TOML"]),
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), BAD_STUDIES.values(), ids=BAD_STUDIES.keys())
+@pytest.mark.parametrize("verb", ["run", "plan"])
+def test_bad_study(verb, text, expected, command, write_study, runs):
+    study = write_study(text)
+    result = command(verb, study)
+    assert result.code == 2
+    assert result.out == ""
+    for words in expected:
+        assert words in result.err
+    assert all(str(study) in line for line in result.err.splitlines())
+    assert list(runs.parent.iterdir()) == [study]
+
+
+def test_every_mistake_is_named_once(command, write_study):
+    result = command("run", write_study(HEAD + "[collision]\nradius = -1\nparticles = 0\n" + GRID))
+    assert len(result.err.splitlines()) == 2
+
+
+def test_unknown_study(command, runs):
+    result = command("run", "quik")
+    assert result.code == 2
+    assert "did you mean 'quick'" in result.err
+    assert not runs.exists()
+
+
+def test_directory_as_study(command, tmp_path):
+    result = command("run", tmp_path)
+    assert result.code == 2
+    assert "cannot be read" in result.err
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "expected"),
+    [
+        ("name", "other", "belongs to study 'other'"),
+        ("physics_version", -1, "physics version -1"),
+        ("jobs", 5, "'jobs'"),
+    ],
+)
+def test_foreign_directory(key, value, expected, command, write_study, runs, tree):
+    command("run", write_study())
+    file = runs / "small" / "campaign.json"
+    file.write_text(json.dumps(json.loads(file.read_text()) | {key: value}))
+    before = tree(runs)
+    result = command("run", write_study(velocity="[300]"))
+    assert result.code == 2
+    assert expected in result.err
+    assert tree(runs) == before
+
+
+def test_other_settings(command, write_study, runs, tree):
+    command("run", write_study())
+    before = tree(runs)
+    result = command("run", write_study(collision="radius = 1e4"))
+    assert result.code == 2
+    assert "radius 50000.0 there and 10000.0 in the study" in result.err
+    assert "RUNS=" in result.err
+    assert tree(runs) == before
+
+
+def test_same_settings_in_other_words(command, write_study):
+    command("run", write_study())
+    assert command("plan", write_study(collision="radius = 50_000\nseed = 1")).code == 0
+
+
+def test_directory_with_other_things(command, write_study, runs, tree):
+    (runs / "small").mkdir(parents=True)
+    (runs / "small" / "holiday.jpg").write_bytes(b"")
+    result = command("run", write_study())
+    assert result.code == 2
+    assert "not a campaign's" in result.err
+    assert list(tree(runs)) == ["small/holiday.jpg"]
+
+
+def test_damaged_campaign_file(command, write_study, runs):
+    command("run", write_study())
+    (runs / "small" / "campaign.json").write_text("{")
+    for verb in ("run", "plan", "status", "collect", "resume"):
+        result = command(verb, write_study())
+        assert result.code == 2
+        assert "campaign.json: not valid JSON" in result.err
+
+
+@pytest.mark.parametrize("verb", ["status", "collect"])
+def test_no_campaign_yet(verb, command, write_study, runs):
+    result = command(verb, write_study())
+    assert result.code == 2
+    assert "holds no campaign" in result.err
+    assert not runs.exists()
+
+
+@pytest.mark.parametrize("options", [["--workers", "0"], ["--threads-per-job", "-1"], ["--arch", "abacus"], ["--fast"]])
+def test_bad_option(options, command, write_study, runs):
+    assert command("run", write_study(), *options).code == 2
+    assert not runs.exists()

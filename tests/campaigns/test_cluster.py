@@ -1,0 +1,26 @@
+"""Sharing the cores among jobs."""
+
+import pytest
+
+from campaigns import cluster
+from campaigns.cluster import share_cores
+
+
+@pytest.mark.parametrize(
+    ("unfinished", "workers", "threads", "expected"),
+    [
+        (72, None, None, (8, 1)),
+        (8, None, None, (8, 1)),
+        (3, None, None, (4, 2)),
+        (1, None, None, (1, 8)),
+        (0, None, None, (1, 8)),
+        (72, None, 2, (4, 2)),
+        (72, None, 16, (1, 16)),
+        (72, 2, None, (2, 4)),
+        (72, 20, None, (20, 1)),
+        (72, 3, 5, (3, 5)),
+    ],
+)
+def test_share_cores(unfinished, workers, threads, expected, monkeypatch):
+    monkeypatch.setattr(cluster, "CPU_COUNT", 8)
+    assert share_cores(unfinished, workers, threads) == expected

@@ -1,0 +1,149 @@
+"""From studies to jobs."""
+
+from itertools import permutations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from campaigns.campaign import Campaign
+from campaigns.expansion import expand
+from campaigns.keys import flatten, nest, scalar_keys, value_at
+from campaigns.study import SHIPPED, Study, find_study, read_study
+from engine.collision import Collision
+from engine.materials import PARAMETER_SETS
+from engine.validation import validate
+
+VELOCITIES = st.lists(st.integers(50, 400), min_size=1, max_size=3, unique=True)
+ANGLES = st.lists(st.integers(0, 90), min_size=1, max_size=3, unique=True)
+
+
+def grid(**axes: list[float]) -> Campaign:
+    return expand(Study(name="grid", axes=axes), "test")
+
+
+def ids(campaign: Campaign) -> set[str]:
+    return {job.id for job in campaign.jobs}
+
+
+@settings(max_examples=20, deadline=None)
+@given(VELOCITIES, ANGLES)
+def test_grid_is_the_product(velocities, angles):
+    campaign = grid(velocity=velocities, angle=angles)
+    assert campaign.dims == ("velocity", "angle")
+    assert [tuple(job.index.values()) for job in campaign.jobs] == [(v, a) for v in velocities for a in angles]
+    assert len(ids(campaign)) == len(velocities) * len(angles)
+    assert all(job.collision.velocity == job.index["velocity"] for job in campaign.jobs)
+
+
+@settings(max_examples=20, deadline=None)
+@given(VELOCITIES, ANGLES)
+def test_whole_numbers_name_the_same_jobs(velocities, angles):
+    floats = grid(velocity=[float(v) for v in velocities], angle=[float(a) for a in angles])
+    assert floats.jobs == grid(velocity=velocities, angle=angles).jobs
+
+
+@settings(max_examples=20, deadline=None)
+@given(VELOCITIES, ANGLES, st.randoms())
+def test_order_in_the_file_has_no_meaning(velocities, angles, random):
+    shuffled = random.sample(velocities, len(velocities))
+    assert ids(grid(angle=angles, velocity=shuffled)) == ids(grid(velocity=velocities, angle=angles))
+
+
+@settings(max_examples=20, deadline=None)
+@given(VELOCITIES, ANGLES, st.integers(500, 600))
+def test_extension_keeps_all_jobs(velocities, angles, further):
+    assert ids(grid(velocity=velocities, angle=angles)) < ids(grid(velocity=[*velocities, further], angle=angles))
+
+
+@settings(max_examples=20, deadline=None)
+@given(VELOCITIES, ANGLES)
+def test_campaign_survives_its_file(velocities, angles):
+    campaign = grid(velocity=velocities, angle=angles)
+    assert validate(Campaign, campaign.content(), "test") == campaign
+
+
+def test_order_of_further_axes_has_no_meaning():
+    axes = {"seed": [1, 2], "friction": [0.5], "viscosity.shear": [0.0, 1e5]}
+    found = [
+        grid(velocity=[100], angle=[5], **{key: axes[key] for key in order}) for order in permutations(sorted(axes))
+    ]
+    assert all(campaign.jobs == found[0].jobs for campaign in found)
+    assert found[0].dims == ("velocity", "angle", "friction", "seed", "viscosity.shear")
+
+
+def test_axes_can_be_nested_tables():
+    nested = expand(Study(name="n", axes={"velocity": [1], "angle": [5], "viscosity": {"shear": [1e3]}}), "test")
+    assert nested.jobs[0].collision.viscosity.shear == 1e3
+    assert nested.jobs == grid(**{"velocity": [1], "angle": [5], "viscosity.shear": [1e3]}).jobs
+
+
+def test_axes_and_cases_give_the_same_job():
+    (from_axes,) = grid(velocity=[100], angle=[5], friction=[0.5]).jobs
+    (from_case,) = expand(
+        Study(name="n", collision={"angle": 5}, cases=[{"friction": 0.5, "velocity": 100, "angle": 5.0}]), "test"
+    ).jobs
+    assert from_axes.id == from_case.id
+    assert from_case.index == {"case": "v0100_a05_friction0.5"}
+
+
+def test_case_names_do_not_depend_on_other_cases():
+    cases = [{"velocity": 100, "angle": 5}, {"velocity": 100, "angle": 5, "end_time": 10.0}]
+    both = expand(Study(name="n", cases=cases), "test")
+    alone = expand(Study(name="n", cases=cases[:1]), "test")
+    assert both.jobs[0] == alone.jobs[0]
+    assert both.dims == ("case",)
+    assert both.coords["case"] == ("v0100_a05", "v0100_a05_end_time10")
+
+
+def test_expansion_leaves_the_study_as_it_is():
+    study = Study(name="n", collision={"viscosity": {}}, axes={"velocity": [1], "angle": [5], "viscosity.bulk": [1]})
+    before = study.model_dump()
+    expand(study, "test")
+    assert study.model_dump() == before
+
+
+@pytest.mark.parametrize(("name", "jobs"), [("quick", 9), ("sugiura2018", 72), ("talk2025", 3)])
+def test_shipped_studies(name, jobs):
+    campaign = expand(read_study(find_study(name)), name)
+    assert campaign.name == name
+    assert len(campaign.jobs) == jobs
+    assert {job.collision.parameter_set for job in campaign.jobs} <= set(PARAMETER_SETS)
+
+
+def test_all_shipped_studies_are_known_here():
+    assert {path.stem for path in SHIPPED.iterdir()} == {"quick", "sugiura2018", "talk2025"}
+
+
+def test_talk_cases_end_at_their_own_times():
+    campaign = expand(read_study(find_study("talk2025")), "talk2025")
+    assert [(c.collision.velocity, c.collision.angle, c.collision.end_time) for c in campaign.jobs] == [
+        (200.0, 5.0, 15200.0),
+        (200.0, 15.0, 10300.0),
+        (300.0, 25.0, 5500.0),
+    ]
+
+
+def test_keys_lead_to_every_single_value():
+    collision = Collision(velocity=1, angle=1, viscosity={}, fracture={})
+    for key in scalar_keys(Collision):
+        assert not isinstance(value_at(collision, key), dict)
+    assert {"velocity", "viscosity.shear", "material.tillotson.A"} <= set(scalar_keys(Collision))
+    assert "viscosity" not in set(scalar_keys(Collision))
+
+
+NAMES = st.text("abc", min_size=1, max_size=2)
+TABLES = st.recursive(
+    st.dictionaries(NAMES, st.integers(), min_size=1), lambda inner: st.dictionaries(NAMES, inner, min_size=1)
+)
+
+
+@settings(max_examples=50, deadline=None)
+@given(TABLES)
+def test_nesting_undoes_flattening(table):
+    assert nest(flatten(table)) == table
+
+
+def test_later_key_wins():
+    assert nest({"a": None, "a.b": 1}) == {"a": {"b": 1}}
+    assert nest({"a.b": 1, "a": None}) == {"a": None}

@@ -1,0 +1,73 @@
+"""Device functions run over arrays, so that a law can be tested alone; random tensors to run them on."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import taichi as ti
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from engine.backend import Real, mat3, vec3, vec6
+
+Array = NDArray[Any]
+Shape = tuple[int, ...]
+
+
+def field(shape: Shape, count: int, dtype: Any = Real) -> Any:
+    """A field of `count` scalars, vectors or matrices."""
+    if shape == ():
+        return ti.field(dtype, count)
+    return {(3,): vec3, (6,): vec6, (3, 3): mat3}[shape].field(shape=count)
+
+
+def evaluate(function: Callable[..., Any], *inputs: Array, outputs: tuple[Shape, ...] = ((),)) -> list[Array]:
+    """What a device function returns for every entry of the inputs, one array per returned value."""
+    count = len(inputs[0])
+    given = [field(values.shape[1:], count, ti.i32 if values.dtype == np.int32 else Real) for values in inputs]
+    for entries, values in zip(given, inputs, strict=True):
+        entries.from_numpy(values)
+    results = [field(shape, count) for shape in outputs]
+
+    @ti.kernel
+    def run():
+        for i in range(count):
+            result = function(*[entries[i] for entries in ti.static(given)])
+            if ti.static(len(results) == 1):
+                results[0][i] = result
+            else:
+                for k in ti.static(range(len(results))):
+                    results[k][i] = result[k]
+
+    run()
+    return [result.to_numpy() for result in results]
+
+
+def rotations(generator: np.random.Generator, count: int) -> Array:
+    """Rotation matrices without a preferred axis, shape [count, 3, 3]."""
+    return np.asarray(Rotation.random(count, random_state=generator).as_matrix())
+
+
+def compose(values: Array, vectors: Array) -> Array:
+    """Symmetric tensors of these eigenvalues and eigenvectors (columns)."""
+    tensors = np.einsum("nik,nk,njk->nij", vectors, values, vectors)
+    return np.asarray(0.5 * (tensors + tensors.transpose(0, 2, 1)))
+
+
+def transform(function: Callable[[Array], Array], tensors: Array) -> Array:
+    """`function` of symmetric tensors, by their eigenvalues."""
+    values, vectors = np.linalg.eigh(tensors)
+    return compose(function(values), vectors)
+
+
+def norm(tensors: Array) -> Array:
+    """Frobenius norm of every tensor."""
+    return np.asarray(np.sqrt(np.einsum("nij,nij->n", tensors, tensors)))
+
+
+def worst(found: Array, expected: Array, scale: Array | float) -> float:
+    """Largest difference in units of `scale`, which has one entry per row or is common to all."""
+    difference = np.abs(found - expected).reshape(len(found), -1).max(axis=1)
+    share = np.divide(difference, scale, out=np.where(difference > 0.0, np.inf, 0.0), where=np.asarray(scale) > 0.0)
+    assert not np.isnan(share).any()
+    return float(share.max())
