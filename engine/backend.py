@@ -2,6 +2,8 @@
 
 import os
 import time
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,8 @@ os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 
 import taichi as ti
 from taichi.lang import impl
+
+from engine.errors import SceneError
 
 Real = ti.f64
 """Precision of every field and literal."""
@@ -39,20 +43,21 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
         threads: CPU threads; all cores if `None`.
 
     Raises:
-        RuntimeError: the asked device is not available.
+        SceneError: the asked device is not available.
     """
-    cache = _cache_directory()
-    ti.init(
-        arch={"cpu": ti.cpu, "cuda": ti.cuda}[arch],
-        default_fp=Real,
-        default_ip=ti.i32,
-        fast_math=False,
-        cpu_max_num_threads=threads or os.cpu_count() or 1,
-        offline_cache=True,
-        offline_cache_file_path=str(cache),
-        enable_fallback=False,
-        log_level=ti.ERROR,
-    )
+    if arch == "cuda" and not ti.lang.misc.is_arch_supported(ti.cuda):
+        raise SceneError("--arch cuda: Taichi finds no CUDA device here; use --arch cpu")
+    with redirect_stdout(StringIO()):  # ti.init prints a banner that no option silences
+        ti.init(
+            arch={"cpu": ti.cpu, "cuda": ti.cuda}[arch],
+            default_fp=Real,
+            default_ip=ti.i32,
+            fast_math=False,
+            cpu_max_num_threads=threads or os.cpu_count() or 1,
+            offline_cache=True,
+            offline_cache_file_path=str(_cache_directory()),
+            log_level=ti.ERROR,
+        )
 
 
 def on_gpu() -> bool:

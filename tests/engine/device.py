@@ -60,6 +60,11 @@ def transform(function: Callable[[Array], Array], tensors: Array) -> Array:
     return compose(function(values), vectors)
 
 
+def traceless(tensors: Array) -> Array:
+    """Deviators of tensors."""
+    return np.asarray(tensors - np.trace(tensors, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3))
+
+
 def norm(tensors: Array) -> Array:
     """Frobenius norm of every tensor."""
     return np.asarray(np.sqrt(np.einsum("nij,nij->n", tensors, tensors)))

@@ -4,10 +4,10 @@ import pytest
 from engine.materials import PARAMETER_SETS, Material
 from engine.strength import Strength, Unlimited
 from tests.engine.device import Array, evaluate, worst
+from tests.engine.oracle import U_MELT, strength_limit
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
-Y0, MU_I, Y_M, U_MELT = 1e7, 1.0, 3.5e9, 3.4e6
 FRICTION = {"sugiura2018": 0.839, "talk": 0.945}
 SETS = list(FRICTION)
 
@@ -18,14 +18,6 @@ def law(name: str) -> Strength:
 
 def engine_limit(name: str, P: Array, E: Array, D: Array) -> Array:
     return evaluate(law(name).limit, P, E, D, np.ones(len(P), dtype=np.int32))[0]
-
-
-def limit(P: Array, u: Array, D: Array, friction: float) -> Array:
-    """Y = (1-D) Y_i + D Y_d (Jutzi 2015)."""
-    P = np.maximum(P, 0.0)
-    intact = Y0 + MU_I * P / (1.0 + MU_I * P / (Y_M - Y0))
-    intact = intact * np.clip(1.0 - u / U_MELT, 0.0, None)
-    return np.asarray((1.0 - D) * intact + D * np.minimum(friction * P, intact))
 
 
 def states(count: int = 6000) -> tuple[Array, Array, Array]:
@@ -40,7 +32,7 @@ def states(count: int = 6000) -> tuple[Array, Array, Array]:
 @pytest.mark.parametrize("name", SETS)
 def test_limit_equals_the_closed_form(name):
     P, u, D = states()
-    expected = limit(P, u, D, FRICTION[name])
+    expected = strength_limit(P, u, D, FRICTION[name])
     assert worst(engine_limit(name, P, u, D), expected, np.maximum(expected, 1.0)) < 1e-14
 
 

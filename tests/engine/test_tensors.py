@@ -17,7 +17,7 @@ from engine.tensors import (
     pack,
     unpack,
 )
-from tests.engine.device import Array, compose, evaluate, norm, rotations, transform, worst
+from tests.engine.device import Array, compose, evaluate, norm, rotations, traceless, transform, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -51,10 +51,6 @@ def tensors(*sizes: float) -> Array:
     turned = np.concatenate([compose(values, rotations(generator, len(values))) for _ in range(4)])
     permuted = np.concatenate([values, values[:, [1, 2, 0]], values[:, [2, 0, 1]]])
     return np.concatenate([turned, permuted[:, :, None] * np.eye(3)])
-
-
-def traceless(tensors: Array) -> Array:
-    return tensors - np.trace(tensors, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
 
 
 def test_half_log_equals_the_log_of_eigenvalues():

@@ -44,10 +44,10 @@ def test_shock_viscosity_is_a_pressure_in_compression_and_nothing_in_expansion()
     rate, _, _ = parts(d)
     stress, diffusivity = viscous(d, rho, c, shock_linear=LINEAR, shock_quadratic=QUADRATIC)
     closing = np.maximum(-rate, 0.0) * DX
-    q = rho * closing * (LINEAR * c + QUADRATIC * closing)
-    expected = -q[:, None, None] * np.eye(3)
-    assert worst(stress, expected, norm(expected)) < 1e-13
-    assert worst(diffusivity, (rate < 0.0) * DX * (LINEAR * c + QUADRATIC * closing), DX * c) < 1e-12
+    speed = LINEAR * c + QUADRATIC * closing
+    expected = -(rho * closing * speed)[:, None, None] * np.eye(3)
+    assert worst(stress, expected, norm(expected)) < 1e-14
+    assert worst(diffusivity, (rate < 0.0) * DX * speed, DX * speed) < 1e-14
     assert np.array_equal(stress[rate >= 0.0], np.zeros_like(stress[rate >= 0.0]))
 
 
