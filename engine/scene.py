@@ -94,7 +94,7 @@ class Numerics(Frozen):
     cfl: time step in units of dx / (wave speed + particle speed).
     """
 
-    particles_per_cell: Positive = 8.0
+    particles_per_cell: Positive = 4.0
     cfl: Fraction = 0.3
 
 
@@ -106,7 +106,7 @@ class Output(Frozen):
     """
 
     history_interval: Positive = 100.0
-    snapshot_interval: Positive | None = None
+    snapshot_interval: Positive | None = 1000.0
 
 
 class Scene(Frozen):

@@ -111,18 +111,22 @@ class Simulation:
 
     def _update_gravity(self) -> None:
         assert self.gravity and self.scene.physics.gravity
-        interval = self.scene.physics.gravity.interval
+        interval, dt = self.scene.physics.gravity.interval, self._next_dt()
         before = self.particles.read("acceleration")["acceleration"]
-        self.gravity.accelerate(ahead=0.5 * interval)
+        # mean time of the kicks that will use it: a step kicks from where particles are when it begins
+        self.gravity.accelerate(ahead=0.5 * dt * (math.ceil(interval / dt) - 1))
         after = self.particles.read("acceleration")["acceleration"]
         self.gravity_change = float(np.linalg.norm(after - before)) / max(float(np.linalg.norm(after)), 1e-300)
         self.gravity_due = self.time + interval
 
     def _launch(self) -> None:
         left = min(self.clock.pause_time[None], self.scene.end_time) - self.time
-        rate = max(self.clock.rate[None], self.clock.least_rate[None])
-        for _ in range(min(LAUNCHES, math.ceil(left * rate) + 1)):
+        for _ in range(min(LAUNCHES, math.ceil(left / self._next_dt()) + 1)):
             self.transfer.step()
+
+    def _next_dt(self) -> float:
+        """The next time step [s]."""
+        return 1.0 / max(self.clock.rate[None], self.clock.least_rate[None])
 
     def _check_fault(self) -> None:
         if self.clock.fault[None] != FAULT_NONE:

@@ -24,7 +24,7 @@ TILE = 64
 LARGEST_INCREMENT = 0.3
 """Largest deformation |dt L| of one step [-]."""
 
-ALONE = 1e-12
+ALONE = 1e-14
 """Share of a particle's mass below which the mass of others on its nodes is round-off."""
 
 

@@ -11,32 +11,33 @@ SMALL_A, SMALL_B, ALPHA, BETA = 0.5, 1.5, 5.0, 5.0
 Y0, MU_I, Y_M, U_MELT = 1e7, 1.0, 3.5e9, 3.4e6
 
 
-def cold(rho: Array, E: Array) -> Array:
-    """Pressure [Pa] of compressed or cold matter (section 2)."""
-    mu = rho / RHO0 - 1.0
-    return (SMALL_A + SMALL_B / (E / (E0 * (rho / RHO0) ** 2) + 1.0)) * rho * E + K * mu + K * mu**2
+def cold(mu: Array, E: Array) -> Array:
+    """Pressure [Pa] of compressed or cold matter (section 2); mu = rho/rho0 - 1 keeps small strains exact."""
+    eta = 1.0 + mu
+    return (SMALL_A + SMALL_B / (E / (E0 * eta**2) + 1.0)) * RHO0 * eta * E + K * mu + K * mu**2
 
 
-def hot(rho: Array, E: Array) -> Array:
+def hot(mu: Array, E: Array) -> Array:
     """Pressure [Pa] of expanded hot matter (section 2)."""
-    mu, stretch = rho / RHO0 - 1.0, RHO0 / rho - 1.0
-    bracket = SMALL_B * rho * E / (E / (E0 * (rho / RHO0) ** 2) + 1.0) + K * mu * np.exp(-BETA * stretch)
-    return SMALL_A * rho * E + bracket * np.exp(-ALPHA * stretch**2)
+    eta = 1.0 + mu
+    stretch = 1.0 / eta - 1.0
+    bracket = SMALL_B * RHO0 * eta * E / (E / (E0 * eta**2) + 1.0) + K * mu * np.exp(-BETA * stretch)
+    return SMALL_A * RHO0 * eta * E + bracket * np.exp(-ALPHA * stretch**2)
 
 
-def tillotson(rho: Array, E: Array) -> Array:
-    """Pressure [Pa] from density and energy; complex arguments give its derivatives."""
-    between = ((E - E_IV) * hot(rho, E) + (E_CV - E) * cold(rho, E)) / (E_CV - E_IV)
-    condensed = (rho.real >= RHO0) | (E.real < E_IV)
-    return np.asarray(np.select([condensed, E.real > E_CV], [cold(rho, E), hot(rho, E)], between))
+def tillotson(mu: Array, E: Array) -> Array:
+    """Pressure [Pa] from compression and energy; complex arguments give its derivatives."""
+    between = ((E - E_IV) * hot(mu, E) + (E_CV - E) * cold(mu, E)) / (E_CV - E_IV)
+    condensed = (mu.real >= 0.0) | (E.real < E_IV)
+    return np.asarray(np.select([condensed, E.real > E_CV], [cold(mu, E), hot(mu, E)], between))
 
 
-def squared_sound_speed(rho: Array, E: Array) -> Array:
+def squared_sound_speed(mu: Array, E: Array) -> Array:
     """dP/drho + (P/rho^2) dP/dE, without floor, by complex steps, which cancel no digits."""
     tiny = 1e-30
-    by_rho = tillotson(rho + 1j * tiny * rho, E + 0j).imag / (tiny * rho)
-    by_E = tillotson(rho + 0j, E + 1j * tiny * E0).imag / (tiny * E0)
-    return np.asarray(by_rho + tillotson(rho, E) / rho**2 * by_E)
+    by_rho = tillotson(mu + 1j * tiny, E + 0j).imag / (tiny * RHO0)
+    by_E = tillotson(mu + 0j, E + 1j * tiny * E0).imag / (tiny * E0)
+    return np.asarray(by_rho + tillotson(mu, E) / (RHO0 * (1.0 + mu)) ** 2 * by_E)
 
 
 def strength_limit(P: Array, u: Array, D: Array, friction: float) -> Array:

@@ -34,8 +34,9 @@ class Points:
         shear: bool = True,
         fracture: Any = None,
         viscosity: Any = None,
+        friction: float = 0.839,
     ) -> None:
-        materials = [Material()]
+        materials = [Material(damaged_friction=friction)]
         self.particles = Particles(count)
         self.constitution = Constitution(
             self.particles,
@@ -48,10 +49,10 @@ class Points:
         )
         self.wave_speed = np.zeros(count)
 
-    def step(self, L: Array, dt: float, fracturing: bool = False) -> None:
+    def step(self, L: Array, dt: float) -> None:
         """One time step with velocity gradients `L` [1/s], one for all particles or one each."""
         count = self.particles.count
-        self._update(np.ascontiguousarray(np.broadcast_to(L, (count, 3, 3))), dt, int(fracturing), self.wave_speed)
+        self._update(np.ascontiguousarray(np.broadcast_to(L, (count, 3, 3))), dt, self.wave_speed)
 
     def settle(self) -> None:
         """A step without motion: stress then belongs to the energy and strain at the end, not in between."""
@@ -82,7 +83,7 @@ class Points:
         return self.stress + self.pressure[:, None, None] * np.eye(3)
 
     @ti.kernel
-    def _update(self, L: Gradients, dt: ti.f64, fracturing: ti.i32, speed: ti.types.ndarray(dtype=ti.f64, ndim=1)):
+    def _update(self, L: Gradients, dt: ti.f64, speed: ti.types.ndarray(dtype=ti.f64, ndim=1)):
         for p in range(L.shape[0]):
-            c, _ = self.constitution.update(p, L[p], dt, fracturing)
+            c, _ = self.constitution.update(p, L[p], dt)
             speed[p] = c
