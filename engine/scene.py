@@ -95,7 +95,7 @@ class Numerics(Frozen):
     """
 
     particles_per_cell: Positive = 4.0
-    cfl: Fraction = 0.3
+    cfl: Fraction = 0.5
 
 
 class Output(Frozen):

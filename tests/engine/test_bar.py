@@ -47,10 +47,11 @@ def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     for n in range(1, STEPS + 1):
         e = e + np.log1p(rate * dt) * np.array([2.0, -1.0, -1.0]) / 3.0
         J, D = (1.0 + rate * dt) ** n, root**3
-        P = tillotson(np.full(count, 1.0 / J - 1.0), E + rate * dt * axial / RHO0)
+        ahead = E + rate * dt * axial / RHO0
+        P = tillotson(np.full(count, 1.0 / J - 1.0), ahead)
         P = np.where(P < 0.0, (1.0 - D) * P, P)
         sqrt_J2 = 2.0 * G / J * np.sqrt(0.5 * (e**2).sum(axis=1))
-        e = e * np.minimum(strength_limit(P, E, D, FRICTION[name]) / sqrt_J2, 1.0)[:, None]
+        e = e * np.minimum(strength_limit(P, ahead, D, FRICTION[name]) / sqrt_J2, 1.0)[:, None]
         s = 2.0 * G / J * e
         before, axial = axial, J * (s[:, 0] - P)
         E = E + 0.5 * rate * dt * (before + axial) / RHO0
@@ -64,14 +65,14 @@ def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
 
 
 @pytest.mark.parametrize("name", list(FRICTION))
-@pytest.mark.parametrize("rate", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize("rate", [0.1, 1.0, 100.0])
 def test_a_bar_breaks_as_an_independent_integration_says(name, rate):
     dt = 2e-3 / rate / STEPS
     stress, damage = engine_bar(name, rate, dt)
     expected_stress, expected_damage = oracle_bar(name, rate, dt)
-    peak = expected_stress.mean(axis=1).max()
-    assert 0.1 < expected_damage[-1].mean()
-    assert expected_stress.mean(axis=1)[-1] < 0.9 * peak or rate > 1.0
-    # strength in the oracle is that of the energy before the step: 1e-9 of it; the rest is round-off of 600 steps
-    assert worst(stress, expected_stress, peak) < 1e-8
-    assert worst(damage, expected_damage, 1.0) < 1e-8
+    mean = expected_stress.mean(axis=1)
+    # slow bars break, fast ones outrun their cracks
+    assert (mean[-1] < 0.8 * mean.max()) == (rate <= 1.0)
+    # round-off of 600 steps; compression in the oracle is known to 1e-16, stress to 1e-16 of K
+    assert worst(stress, expected_stress, mean.max()) < 1e-11
+    assert worst(damage, expected_damage, 1.0) < 1e-13
