@@ -45,10 +45,10 @@ def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     e, E, root, axial = np.zeros((count, 3)), np.zeros(count), np.zeros(count), np.zeros(count)
     stress, damage = [], []
     for n in range(1, STEPS + 1):
-        e = e + np.log1p(rate * dt) * np.array([2.0, -1.0, -1.0]) / 3.0
-        J, D = (1.0 + rate * dt) ** n, root**3
+        log_J, D = n * np.log1p(rate * dt), root**3
+        e, J = e + np.log1p(rate * dt) * np.array([2.0, -1.0, -1.0]) / 3.0, np.exp(log_J)
         ahead = E + rate * dt * axial / RHO0
-        P = tillotson(np.full(count, 1.0 / J - 1.0), ahead)
+        P = tillotson(np.full(count, np.expm1(-log_J)), ahead)
         P = np.where(P < 0.0, (1.0 - D) * P, P)
         sqrt_J2 = 2.0 * G / J * np.sqrt(0.5 * (e**2).sum(axis=1))
         e = e * np.minimum(strength_limit(P, ahead, D, FRICTION[name]) / sqrt_J2, 1.0)[:, None]
@@ -73,6 +73,6 @@ def test_a_bar_breaks_as_an_independent_integration_says(name, rate):
     mean = expected_stress.mean(axis=1)
     # slow bars break, fast ones outrun their cracks
     assert (mean[-1] < 0.8 * mean.max()) == (rate <= 1.0)
-    # round-off of 600 steps; compression in the oracle is known to 1e-16, stress to 1e-16 of K
-    assert worst(stress, expected_stress, mean.max()) < 1e-11
+    # round-off of 600 steps
+    assert worst(stress, expected_stress, mean.max()) < 1e-12
     assert worst(damage, expected_damage, 1.0) < 1e-13
