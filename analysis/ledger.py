@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from engine.body import Solid
 from engine.errors import JobError
-from engine.scene import Body, Scene
+from engine.scene import Scene
 from engine.storage import read_dataset
 
 NEGLIGIBLE = 1e-6
@@ -57,9 +58,8 @@ def _scales(scene: Scene) -> tuple[float, float]:
     return momentum, total if total > NEGLIGIBLE * largest else 0.0
 
 
-def _angular_momentum(body: Body) -> np.ndarray:
-    orbital = np.cross(body.position, body.velocity)
-    return np.asarray(body.mass * (orbital + 0.4 * body.radius**2 * np.array(body.spin)))
+def _angular_momentum(body: Solid) -> np.ndarray:
+    return np.asarray(body.mass * np.cross(body.position, body.velocity) + body.spin_momentum)
 
 
 def _magnitude(vector: xr.DataArray) -> xr.DataArray:

@@ -1,4 +1,4 @@
-"""Command line: `python -m engine run JOBDIR`."""
+"""Command line: `python -m engine run JOBDIR` and `python -m engine verify`."""
 
 import logging
 import os
@@ -12,6 +12,7 @@ from rich.console import Console
 
 from engine.errors import JobBusyError, JobError, SceneError
 from engine.jobdir import JobDirectory, Status
+from engine.validation import suggestion
 
 application = typer.Typer(
     add_completion=False, no_args_is_help=True, help="One simulation: a scene in, a job directory out."
@@ -26,11 +27,6 @@ class Arch(StrEnum):
 
     CPU = "cpu"
     CUDA = "cuda"
-
-
-@application.callback()
-def main() -> None:
-    """Keep `run` a named command, though it is the only one."""
 
 
 @application.command()
@@ -55,6 +51,37 @@ def run(
     if status.state != "done":
         _exit(f"{directory}: {status.state}: {status.reason}", FAILED if status.state == "failed" else INTERRUPTED)
     typer.echo(f"{directory}: done after {status.step} steps")
+
+
+@application.command()
+def verify(
+    names: Annotated[list[str] | None, typer.Argument(help="Problems to run; all if none is named.")] = None,
+    full: Annotated[bool, typer.Option("--full", help="Fine resolutions: minutes instead of seconds each.")] = False,
+    figures: Annotated[Path | None, typer.Option(help="Directory for figures of the problems that have one.")] = None,
+    threads: Annotated[int, typer.Option(min=1, help="CPU threads.")] = os.cpu_count() or 1,
+    arch: Annotated[Arch, typer.Option(help="Device.")] = Arch.CPU,
+) -> None:
+    """Run scenes with known answers and print measured beside expected values.
+
+    Exit code 0: all errors are allowed; 1: one is not; 2: bad input.
+    """
+    from engine.verification.catalogue import FULL, SHORT
+    from engine.verification.figures import draw
+    from engine.verification.report import run_all, table
+
+    known = FULL if full else SHORT
+    for name in set(names or ()) - set(known):
+        _exit(f"unknown problem '{name}'{suggestion(name, list(known))}", BAD_INPUT)
+    chosen = [known[name] for name in names or known]
+    with Console(stderr=True).status("running") as spinner:
+        results = []
+        for result in run_all(chosen, arch.value, threads):
+            results.append(result)
+            spinner.update(f"{len(results)} of {len(chosen)} done, {result.name} last")
+        if figures:
+            draw(chosen, figures)
+    Console().print(table(results))
+    raise typer.Exit(DONE if all(result.passed for result in results) else FAILED)
 
 
 def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) -> Status:

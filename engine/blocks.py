@@ -20,6 +20,8 @@ HALF_RANGE = 1 << 20
 """Blocks per axis on either side of the origin."""
 
 Integers = NDArray[np.integer]
+Period = tuple[int, int, int]
+UNBOUNDED = (0, 0, 0)
 
 CORNERS = np.array(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij")).reshape(3, 8).T
 NEIGHBOURS = np.array(np.meshgrid([-1, 0, 1], [-1, 0, 1], [-1, 0, 1], indexing="ij")).reshape(3, 27).T
@@ -60,19 +62,31 @@ def block_of(x: NDArray[np.floating], dx: float) -> Integers:
     return block.astype(np.int32)
 
 
-def build_blocks(block: Integers) -> Blocks:
+def wrap(x: NDArray[np.float64], block: Integers, dx: float, period: Period) -> tuple[NDArray[np.float64], Integers]:
+    """Positions [m] and blocks moved by whole periods into the first one of each periodic axis."""
+    turns = np.where(np.array(period) > 0, block // np.maximum(period, 1), 0)
+    return x - turns * period * (EDGE * dx), (block - turns * period).astype(np.int32)
+
+
+def build_blocks(block: Integers, period: Period = UNBOUNDED) -> Blocks:
     """Blocks, order and overlaps from the block of each particle.
 
     Args:
         block: block coordinates, shape [particle_count, 3].
+        period: blocks after which space repeats along each axis; 0 is unbounded.
     """
     keys, inverse, counts = np.unique(_key(block), return_inverse=True, return_counts=True)
-    alone = (counts == 1) & (_neighbour_count(keys) == 1)
+    alone = (counts == 1) & (_neighbour_count(keys, period) == 1)
     rank = np.where(alone, len(keys), np.arange(len(keys)))[inverse]
     order = np.argsort(rank, kind="stable").astype(np.int32)
     shared = keys[~alone]
     first = np.concatenate([[0], np.cumsum(counts[~alone])]).astype(np.int32)
-    return Blocks(_coordinates(shared), first, order, _sources(shared))
+    return Blocks(_coordinates(shared), first, order, _sources(shared, period))
+
+
+def _folded(block: Integers, period: Period) -> Integers:
+    """Block coordinates in the first period of each periodic axis."""
+    return np.where(np.array(period) > 0, block % np.maximum(period, 1), block)
 
 
 def _key(block: Integers) -> Integers:
@@ -86,16 +100,16 @@ def _coordinates(keys: Integers) -> Integers:
     return (np.stack(axes, axis=-1) - HALF_RANGE).astype(np.int32)
 
 
-def _neighbour_count(keys: Integers) -> Integers:
+def _neighbour_count(keys: Integers, period: Period) -> Integers:
     """Number of occupied blocks among the 27 around each block, itself included."""
-    around = _key(_coordinates(keys)[:, None, :] + NEIGHBOURS)
+    around = _key(_folded(_coordinates(keys)[:, None, :] + NEIGHBOURS, period))
     return np.asarray(np.isin(around, keys).sum(axis=1))
 
 
-def _sources(keys: Integers) -> Integers:
+def _sources(keys: Integers, period: Period) -> Integers:
     """The eight blocks over each tile that any block touches."""
-    tiles = _coordinates(np.unique(_key(_coordinates(keys)[:, None, :] + CORNERS)))
-    owners = _key(tiles[:, None, :] - CORNERS)
+    tiles = _coordinates(np.unique(_key(_folded(_coordinates(keys)[:, None, :] + CORNERS, period))))
+    owners = _key(_folded(tiles[:, None, :] - CORNERS, period))
     index = np.searchsorted(keys, owners)
     found = np.isin(owners, keys)
     return np.where(found, index, -1).astype(np.int32)

@@ -5,9 +5,10 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from engine.body import Body
 from engine.materials import PARAMETER_SETS, Fracture, Material
 from engine.orbit import Approach, approach
-from engine.scene import Body, Gravity, Numerics, Output, Physics, Scene, Viscosity
+from engine.scene import Gravity, Numerics, Output, Physics, Scene, Viscosity
 from engine.validation import Finite, Frozen, Positive, suggestion
 
 

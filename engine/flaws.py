@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.body import Solid
 from engine.materials import Fracture
-from engine.scene import Body
 
 
 @dataclass(frozen=True)
@@ -22,14 +22,14 @@ class Flaws:
     strain: NDArray[np.float64]
 
 
-def draw_flaws(body: Body, fracture: Fracture, generator: np.random.Generator) -> Flaws:
+def draw_flaws(body: Solid, fracture: Fracture, generator: np.random.Generator) -> Flaws:
     """Flaws of one body, the weakest first, each given to a random particle."""
-    owner = _owners(body.particles, fracture, generator)
+    owner = _owners(body.count, fracture, generator)
     number = np.arange(1, len(owner) + 1)
     material = body.material
     strain = (number / (material.weibull_k * body.volume)) ** (1.0 / material.weibull_m)
     order = np.argsort(owner, kind="stable")
-    first = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=body.particles))])
+    first = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=body.count))])
     return Flaws(first.astype(np.int32), strain[order])
 
 

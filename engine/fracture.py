@@ -6,8 +6,8 @@ import taichi as ti
 
 from engine import materials
 from engine.backend import Real, filled
+from engine.body import Solid
 from engine.flaws import Flaws
-from engine.scene import Body
 from engine.tensors import largest_eigenvalue
 
 
@@ -21,7 +21,7 @@ class Fracture:
         flaws: activation strains of every particle.
     """
 
-    def __init__(self, bodies: Sequence[Body], rule: materials.Fracture, flaws: Flaws) -> None:
+    def __init__(self, bodies: Sequence[Solid], rule: materials.Fracture, flaws: Flaws) -> None:
         self.per_flaw = rule.per_flaw
         self.table = ti.types.struct(modulus=Real, rate=Real).field(shape=len(bodies))
         for i, body in enumerate(bodies):

@@ -1,88 +1,96 @@
-"""Self-gravity as a direct sum over all pairs (engine/physics.md, section 7)."""
+"""Self-gravity of particles: what a direct sum and a tree have in common (engine/physics.md, section 7)."""
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.backend import TASK, Real, capacity, on_gpu
+from engine.backend import Real, capacity, overwrite
 from engine.orbit import G
 
-GROUP = 64
-"""Targets that one CPU thread serves in one pass over the sources: their sums stay in the nearest cache."""
+Vectors = NDArray[np.float64]
+Places = NDArray[np.int64]
 
 
-@ti.data_oriented
-class DirectSum:
+class SelfGravity(ABC):
     """Pull of every particle, taken as a homogeneous ball of one radius, on every other.
+
+    `x`, `y`, `z`, `mu` (G times mass) hold the particles in an order that suits the solver; `ax`, `ay`, `az` and
+    `potential` receive its result, one component a field so that loops over targets run through memory in step.
 
     Args:
         particles: state of the particles.
         radius: radius of the ball [m]: the field is Newton's outside and linear inside.
+        places: places for particles that the solver uses; at least their number.
     """
 
-    def __init__(self, particles: Any, radius: float) -> None:
+    def __init__(self, particles: Any, radius: float, places: int) -> None:
         self.particles, self.count = particles, particles.count
-        self.group, self.task = (1, 1) if on_gpu() else (GROUP, TASK)
         self.radius = ti.field(Real, ())
         self.radius[None] = radius
-        shape = capacity(particles.count)
+        shape = capacity(places)
         self.x, self.y, self.z, self.mu = (ti.field(Real, shape) for _ in range(4))
         self.ax, self.ay, self.az, self.potential = (ti.field(Real, shape) for _ in range(4))
 
-    def accelerate(self, ahead: float) -> None:
-        """Set every particle's acceleration to the pull at positions a time `ahead` [s] of now, without net force."""
-        pull = self.pull(ahead)
-        mean = np.average(pull, axis=0, weights=self.particles.read("mass")["mass"])
-        self.particles.write({"acceleration": pull - mean})
+    @abstractmethod
+    def arrange(self, x: Vectors) -> Places:
+        """Which particle goes to each place, or -1 for none.
 
-    def pull(self, ahead: float) -> NDArray[np.float64]:
+        Args:
+            x: positions [m], shape [particle_count, 3].
+        """
+
+    @abstractmethod
+    def solve(self) -> None:
+        """Fill acceleration and potential from positions and mu."""
+
+    def accelerate(self, ahead: float) -> None:
+        """Set every particle's acceleration to the pull at positions a time `ahead` [s] of now."""
+        state = self.particles.read("x", "v", "mass")
+        x = state["x"] + ahead * state["v"]
+        pull = self._evaluate(x, state["mass"], self.ax, self.ay, self.az)
+        self.particles.write({"acceleration": without_net_effect(pull, x, state["mass"])})
+
+    def pull(self, ahead: float) -> Vectors:
         """Acceleration [m/s^2] at positions a time `ahead` [s] of now, shape [particle_count, 3]."""
-        self.collect_sources(self.count, ahead)
-        self.sum_pairs(self.count)
-        return np.stack([a.to_numpy()[: self.count] for a in (self.ax, self.ay, self.az)], axis=1)
+        state = self.particles.read("x", "v", "mass")
+        return self._evaluate(state["x"] + ahead * state["v"], state["mass"], self.ax, self.ay, self.az)
 
     def energy(self) -> float:
         """Gravitational energy [J] of the particles where they are."""
-        self.collect_sources(self.count, 0.0)
-        self.sum_pairs(self.count)
-        mass = self.particles.read("mass")["mass"]
-        return 0.5 * float(np.sum(mass * self.potential.to_numpy()[: self.count]))
+        state = self.particles.read("x", "mass")
+        potential = self._evaluate(state["x"], state["mass"], self.potential)
+        return 0.5 * float(np.sum(state["mass"] * potential[:, 0]))
 
-    @ti.kernel
-    def collect_sources(self, count: ti.i32, ahead: ti.f64):
-        """Positions and masses, each component by itself."""
-        for p in range(count):
-            x = self.particles.x[p] + ahead * self.particles.v[p]
-            self.x[p], self.y[p], self.z[p] = x[0], x[1], x[2]
-            self.mu[p] = G * self.particles.mass[p]
+    def _evaluate(self, x: Vectors, mass: Vectors, *wanted: ti.Field) -> Vectors:
+        """The wanted results of a solution, in the order of the particles."""
+        particle = self.arrange(x)
+        taken = particle >= 0
+        sources = (*x[np.maximum(particle, 0)].T, np.where(taken, G * mass[particle], 0.0))
+        for field, values in zip((self.x, self.y, self.z, self.mu), sources, strict=True):
+            overwrite(field, values)
+        self.solve()
+        result = np.empty((self.count, len(wanted)))
+        for column, field in enumerate(wanted):
+            result[particle[taken], column] = field.to_numpy()[: len(particle)][taken]
+        return result
 
-    @ti.kernel
-    def sum_pairs(self, count: ti.i32):
-        """Acceleration and potential of every particle, sources always in the same order."""
-        for t in range((count + self.group - 1) // self.group * self.task):
-            if t % self.task == 0:
-                first = t // self.task * self.group
-                last = ti.min(first + self.group, count)
-                for p in range(first, last):
-                    self.ax[p], self.ay[p], self.az[p] = 0.0, 0.0, 0.0
-                    self.potential[p] = 1.5 * self.mu[p] / self.radius[None]  # takes out the particle's own share
-                for q in range(count):
-                    self.add_source(q, first, last)
 
-    @ti.func
-    def add_source(self, q, first, last):
-        """Add the pull of particle q to a range of targets."""
-        x, y, z, mu = self.x[q], self.y[q], self.z[q], self.mu[q]
-        ball = self.radius[None] ** 2
-        for p in range(first, last):
-            dx, dy, dz = x - self.x[p], y - self.y[p], z - self.z[p]
-            square = dx * dx + dy * dy + dz * dz
-            inverse = 1.0 / ti.sqrt(ti.max(square, ball))
-            strength = mu * inverse * inverse * inverse
-            self.ax[p] = self.ax[p] + strength * dx
-            self.ay[p] = self.ay[p] + strength * dy
-            self.az[p] = self.az[p] + strength * dz
-            # inside the ball 1/r becomes (3 - r^2/R^2) / 2R; outside the bracket is one
-            self.potential[p] = self.potential[p] - mu * inverse * (1.5 - 0.5 * ti.min(square * inverse * inverse, 1.0))
+def without_net_effect(pull: Vectors, x: Vectors, mass: Vectors) -> Vectors:
+    """Accelerations without net force and net torque, which no forces between pairs have.
+
+    Of all corrections that achieve this, the rigid motion taken out is the smallest in the mass-weighted mean square.
+
+    Args:
+        pull: accelerations [m/s^2], shape [particle_count, 3].
+        x: positions [m], shape [particle_count, 3].
+        mass: masses [kg], shape [particle_count].
+    """
+    r = x - np.average(x, axis=0, weights=mass)
+    rest = pull - np.average(pull, axis=0, weights=mass)
+    torque = np.sum(mass[:, None] * np.cross(r, rest), axis=0)
+    moments = np.einsum("p,pi,pj->ij", mass, r, r)
+    inertia = np.trace(moments) * np.eye(3) - moments
+    return np.asarray(rest - np.cross(np.linalg.pinv(inertia, hermitian=True) @ torque, r))

@@ -3,10 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.body import Body, Box, Solid
+from engine.cuboid import box_points
 from engine.flaws import Flaws, draw_flaws, join
 from engine.orbit import G
 from engine.particles import Arrays
-from engine.scene import Body, Scene
+from engine.scene import Scene
 from engine.sphere import sphere_points
 
 
@@ -28,21 +30,30 @@ def all_flaws(scene: Scene) -> Flaws:
     return join([draw_flaws(body, rule, generator(scene, i, 1)) for i, body in enumerate(scene.bodies)])
 
 
-def _body_state(scene: Scene, index: int, body: Body) -> Arrays:
-    points = sphere_points(body.particles, body.radius, generator(scene, index, 0))
-    pressure = _hydrostatic_pressure(body, points) if body.hydrostatic else np.zeros(len(points))
+def _body_state(scene: Scene, index: int, body: Body | Box) -> Arrays:
+    points, pressure = _points(scene, index, body), np.zeros(body.count)
+    if isinstance(body, Body) and body.hydrostatic:
+        pressure = _hydrostatic_pressure(body, points)
     mu = pressure / body.material.tillotson.A
     return {
         "x": points + np.array(body.position),
         "v": np.array(body.velocity) + np.cross(np.array(body.spin), points),
-        "C": np.tile(_spin_tensor(body), (body.particles, 1, 1)),
+        "C": np.tile(_spin_tensor(body), (body.count, 1, 1)),
         "j": -mu / (1.0 + mu),
         "E": 0.5 * body.material.tillotson.A * mu**2 / body.material.rho0,
         "tau": np.outer(-pressure / (1.0 + mu), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
-        "root": np.full(body.particles, body.damage ** (1.0 / 3.0)),
-        "mass": np.full(body.particles, body.mass / body.particles),
-        "body": np.full(body.particles, index, dtype=np.int32),
+        "root": np.full(body.count, body.damage ** (1.0 / 3.0)),
+        "acceleration": np.tile(scene.physics.uniform_gravity or (0.0, 0.0, 0.0), (body.count, 1)),
+        "mass": np.full(body.count, body.mass / body.count),
+        "body": np.full(body.count, index, dtype=np.int32),
     }
+
+
+def _points(scene: Scene, index: int, body: Body | Box) -> NDArray[np.float64]:
+    """Positions relative to the centre [m], shape [particle_count, 3]."""
+    if isinstance(body, Box):
+        return box_points(body.lattice, body.size)
+    return sphere_points(body.particles, body.radius, generator(scene, index, 0))
 
 
 def _hydrostatic_pressure(body: Body, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -52,7 +63,7 @@ def _hydrostatic_pressure(body: Body, points: NDArray[np.float64]) -> NDArray[np
     return np.asarray(pressure)
 
 
-def _spin_tensor(body: Body) -> NDArray[np.float64]:
+def _spin_tensor(body: Solid) -> NDArray[np.float64]:
     """Velocity gradient [1/s] of rigid rotation."""
     x, y, z = body.spin
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

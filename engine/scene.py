@@ -1,44 +1,25 @@
 """A scene: the bodies, the parts of physics they obey, and how finely to resolve them. SI units throughout."""
 
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
+from engine.blocks import EDGE
+from engine.body import Body, Box
 from engine.errors import SceneError
-from engine.materials import Fracture, Material
+from engine.materials import Fracture
 from engine.validation import Finite, Frozen, NonNegative, Positive, Vector, read_table, validate
 
 Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
 
 
-class Body(Frozen):
-    """A homogeneous sphere of `particles` equal particles."""
+def _shape(body: Any) -> str:
+    """Which shape of body plain keys describe."""
+    return "box" if isinstance(body, Box) or (isinstance(body, dict) and "lattice" in body) else "sphere"
 
-    name: str = "body"
-    radius: Positive
-    particles: Annotated[int, Field(ge=1)]
-    position: Vector = (0.0, 0.0, 0.0)
-    velocity: Vector = (0.0, 0.0, 0.0)
-    spin: Vector = (0.0, 0.0, 0.0)
-    material: Material = Material()
-    damage: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
-    hydrostatic: bool = True
 
-    @property
-    def volume(self) -> float:
-        """Volume [m^3] at the reference density."""
-        return 4.0 / 3.0 * 3.141592653589793 * self.radius**3
-
-    @property
-    def mass(self) -> float:
-        """Mass [kg]."""
-        return self.material.rho0 * self.volume
-
-    @property
-    def spacing(self) -> float:
-        """Particle spacing h = (m/rho0)^(1/3) [m]."""
-        return float((self.volume / self.particles) ** (1.0 / 3.0))
+AnyBody = Annotated[Annotated[Body, Tag("sphere")] | Annotated[Box, Tag("box")], Discriminator(_shape)]
 
 
 class Gravity(Frozen):
@@ -46,10 +27,12 @@ class Gravity(Frozen):
 
     softening: radius of the ball that stands for one particle, in units of the largest spacing h.
     interval: time [s] for which one evaluation, made at positions half of it ahead, is held.
+    opening: size over distance below which a group of particles acts as a whole; 0 sums over all pairs.
     """
 
     softening: Positive = 1.0
-    interval: Positive = 10.0
+    interval: Positive = 20.0
+    opening: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
 
 
 class Viscosity(Frozen):
@@ -66,10 +49,30 @@ class Viscosity(Frozen):
     shock_quadratic: NonNegative = 0.0
 
 
+class Wall(Frozen):
+    """A rigid plane; matter is on the side that its normal points to.
+
+    point: any point of the plane [m].
+    normal: direction into the matter, of any length.
+    friction: coefficient of Coulomb friction [-], 0 slips; `stick` holds whatever touches it.
+    """
+
+    point: Vector = (0.0, 0.0, 0.0)
+    normal: Vector = (0.0, 0.0, 1.0)
+    friction: NonNegative | Literal["stick"] = 0.0
+
+    @model_validator(mode="after")
+    def _has_a_direction(self) -> Self:
+        if not any(self.normal):
+            raise ValueError("'normal' must not be zero")
+        return self
+
+
 class Physics(Frozen):
     """The parts of physics a scene uses; `null` leaves a part out, and it then costs nothing.
 
-    Pressure is always Tillotson's. `shear` adds the Hencky deviatoric stress, `strength` its radial return.
+    Pressure is always Tillotson's. `shear` adds the Hencky deviatoric stress, `strength` its radial return;
+    `uniform_gravity` [m/s^2] takes the place of self-gravity.
     """
 
     shear: bool = True
@@ -77,6 +80,8 @@ class Physics(Frozen):
     fracture: Fracture | None = Fracture()
     gravity: Gravity | None = Gravity()
     viscosity: Viscosity | None = None
+    uniform_gravity: Vector | None = None
+    walls: tuple[Wall, ...] = ()
 
     @model_validator(mode="after")
     def _parts_fit_together(self) -> Self:
@@ -84,6 +89,8 @@ class Physics(Frozen):
             raise ValueError("'strength' limits shear stress: it needs shear = true")
         if self.fracture and not self.strength:
             raise ValueError("'fracture' weakens strength: it needs strength = true")
+        if self.gravity and self.uniform_gravity:
+            raise ValueError("'uniform_gravity' takes the place of self-gravity: it needs gravity = null")
         return self
 
 
@@ -110,9 +117,13 @@ class Output(Frozen):
 
 
 class Scene(Frozen):
-    """Everything a run depends on; the same scene gives the same results."""
+    """Everything a run depends on; the same scene gives the same results.
 
-    bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
+    period: length [m] after which space repeats along each axis, a multiple of four cells; `null` is unbounded.
+    """
+
+    bodies: Annotated[tuple[AnyBody, ...], Field(min_length=1)]
+    period: tuple[Positive | None, Positive | None, Positive | None] = (None, None, None)
     start_time: Finite = 0.0
     end_time: Finite
     seed: Annotated[int, Field(ge=0)] = 1
@@ -126,10 +137,26 @@ class Scene(Frozen):
             raise ValueError(f"end_time {self.end_time} s is not after start_time {self.start_time} s")
         return self
 
+    @model_validator(mode="after")
+    def _repeats_in_whole_blocks(self) -> Self:
+        for length in filter(None, self.period):
+            blocks = length / (EDGE * self.dx)
+            if round(blocks) < 1 or abs(blocks - round(blocks)) > 1e-6:
+                raise ValueError(f"'period' {length} m is not a multiple of {EDGE} cells of {self.dx} m")
+        if any(self.period) and self.physics.gravity:
+            raise ValueError("'period' repeats space without end: self-gravity needs it to be null")
+        return self
+
+    @property
+    def period_blocks(self) -> tuple[int, int, int]:
+        """Blocks after which space repeats along each axis; 0 is unbounded."""
+        x, y, z = (round(length / (EDGE * self.dx)) if length else 0 for length in self.period)
+        return x, y, z
+
     @property
     def particles(self) -> int:
         """Number of particles in all bodies."""
-        return sum(body.particles for body in self.bodies)
+        return sum(body.count for body in self.bodies)
 
     @property
     def spacing(self) -> float:

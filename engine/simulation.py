@@ -1,24 +1,29 @@
 """A scene in motion: assembled from the parts it names, advanced from one pause to the next."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.blocks import block_of, build_blocks
+from engine.blocks import block_of, build_blocks, wrap
+from engine.body import Solid
 from engine.clock import FAULT_NONE, Clock
 from engine.constitution import Constitution
+from engine.direct_sum import DirectSum
 from engine.errors import RunFault
 from engine.fracture import Fracture, Unbreakable
-from engine.gravity import DirectSum
+from engine.gravity import SelfGravity
 from engine.initial import all_flaws, initial_state
 from engine.ledger import Totals, elastic_energy, totals
 from engine.particles import Arrays, Particles
-from engine.scene import Body, Scene
+from engine.scene import Scene
 from engine.strength import Strength, Unlimited
 from engine.tillotson import Tillotson
 from engine.transfer import Transfer
+from engine.tree import Tree
 from engine.viscosity import Inviscid, Viscosity
+from engine.walls import Walls
 
 LAUNCHES = 64
 """Most steps launched before the host looks whether they ran."""
@@ -37,7 +42,7 @@ class Simulation:
         self.particles = Particles(scene.particles)
         longest = physics.gravity.interval if physics.gravity else scene.end_time - scene.start_time
         self.clock = Clock(scene.start_time, scene.end_time, longest)
-        self.gravity = DirectSum(self.particles, physics.gravity.softening * scene.spacing) if physics.gravity else None
+        self.gravity = _gravity(scene, self.particles)
         self.constitution = Constitution(
             self.particles,
             Tillotson(materials),
@@ -47,6 +52,7 @@ class Simulation:
             materials,
             physics.shear,
         )
+        self.walls = Walls(physics.walls) if physics.walls else None
         self._make_room(scene.particles // 8)
         self.gravity_due = scene.start_time if self.gravity else math.inf
         self.gravity_change = 0.0
@@ -66,9 +72,9 @@ class Simulation:
         """Whether the end time is reached."""
         return self.time >= self.scene.end_time
 
-    def start(self) -> None:
-        """Put all particles where the scene has them."""
-        self.particles.write(initial_state(self.scene))
+    def start(self, **changes: NDArray[Any]) -> None:
+        """Put all particles where the scene has them; `changes` replace whole fields of their state."""
+        self.particles.write({**initial_state(self.scene), **changes})
         self.rebuild_blocks()
         self.clock.rate[None] = self._first_rate()
 
@@ -88,20 +94,24 @@ class Simulation:
     def rebuild_blocks(self) -> None:
         """Sort particles into the blocks they are in now."""
         x = self.particles.read("x")["x"]
-        self.particles.write({"origin": block_of(x, self.scene.dx)})
+        block = block_of(x, self.scene.dx)
+        if any(self.scene.period):
+            x, block = wrap(x, block, self.scene.dx, self.scene.period_blocks)
+            self.particles.write({"x": x})
+        self.particles.write({"origin": block})
         self.use_stored_blocks()
 
     def use_stored_blocks(self) -> None:
         """Build the blocks from where the particles were when blocks were last built."""
-        blocks = build_blocks(self.particles.read("origin")["origin"])
+        blocks = build_blocks(self.particles.read("origin")["origin"], self.scene.period_blocks)
         if len(blocks.origin) > self.transfer.capacity:
             self._make_room(2 * len(blocks.origin))
         self.transfer.use(blocks)
         self.clock.moved_out[None] = 0
 
     def _make_room(self, blocks: int) -> None:
-        scene = self.scene
-        self.transfer = Transfer(self.particles, self.constitution, self.clock, scene.dx, scene.numerics.cfl, blocks)
+        dx, cfl = self.scene.dx, self.scene.numerics.cfl
+        self.transfer = Transfer(self.particles, self.constitution, self.clock, self.walls, dx, cfl, blocks)
 
     def _handle_events(self) -> None:
         if self.clock.moved_out[None]:
@@ -126,7 +136,7 @@ class Simulation:
 
     def _next_dt(self) -> float:
         """The next time step [s]."""
-        return 1.0 / max(self.clock.rate[None], self.clock.least_rate[None])
+        return float(1.0 / max(self.clock.rate[None], self.clock.least_rate[None]))
 
     def _check_fault(self) -> None:
         if self.clock.fault[None] != FAULT_NONE:
@@ -149,14 +159,30 @@ class Simulation:
         bulk = np.array([material.tillotson.A for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
         elastic = elastic_energy(state, self.rho0(state), bulk, shear)
-        return totals(state, self.scene.dx, elastic, self.gravity.energy() if self.gravity else 0.0)
+        return totals(state, self.scene.dx, elastic, self._gravitational_energy(state))
+
+    def _gravitational_energy(self, state: Arrays) -> float:
+        """Energy [J] in the field of the particles, or in the uniform one relative to the origin."""
+        if self.gravity:
+            return float(self.gravity.energy())
+        uniform = np.array(self.scene.physics.uniform_gravity or (0.0, 0.0, 0.0))
+        return -float(np.sum(state["mass"] * (state["x"] @ uniform)))
 
     def rho0(self, state: Arrays) -> NDArray[np.float64]:
         """Reference density of every particle [kg/m^3], shape [particle_count]."""
         return np.array([body.material.rho0 for body in self.scene.bodies])[state["body"]]
 
 
-def _fastest(body: Body) -> float:
+def _gravity(scene: Scene, particles: Particles) -> SelfGravity | None:
+    """The solver for the scene's gravity: a tree, or the sum over all pairs at opening 0."""
+    gravity = scene.physics.gravity
+    if gravity is None:
+        return None
+    radius = gravity.softening * scene.spacing
+    return Tree(particles, radius, gravity.opening) if gravity.opening > 0.0 else DirectSum(particles, radius)
+
+
+def _fastest(body: Solid) -> float:
     """Highest signal speed [m/s] in an unstressed body."""
-    rotation = float(np.linalg.norm(body.spin)) * body.radius
+    rotation = float(np.linalg.norm(body.spin)) * body.reach
     return body.material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + rotation

@@ -25,7 +25,10 @@ LARGEST_INCREMENT = 0.3
 """Largest deformation |dt L| of one step [-]."""
 
 ALONE = 1e-14
-"""Share of a particle's mass below which the mass of others on its nodes is round-off."""
+"""Share of a particle's mass below which what others have on the same nodes is round-off.
+
+The smaller of both masses at a node bounds the momentum they can exchange there, so that none is lost with them.
+"""
 
 
 @ti.func
@@ -42,14 +45,17 @@ class Transfer:
         particles: state of the particles.
         constitution: response of one particle.
         clock: time and time step.
+        walls: rigid planes, or `None`.
         dx: grid spacing [m].
         cfl: time step in units of the time a wave needs for one cell.
         blocks: number of blocks to make room for.
     """
 
-    def __init__(self, particles: Any, constitution: Any, clock: Clock, dx: float, cfl: float, blocks: int) -> None:
-        self.particles, self.constitution, self.clock = particles, constitution, clock
-        self.by_block = not on_gpu()
+    def __init__(
+        self, particles: Any, constitution: Any, clock: Clock, walls: Any, dx: float, cfl: float, blocks: int
+    ) -> None:
+        self.particles, self.constitution, self.clock, self.walls = particles, constitution, clock, walls
+        self.by_block, self.has_walls = not on_gpu(), walls is not None
         self.capacity = capacity(blocks)
         self.dx, self.cfl = ti.field(Real, ()), ti.field(Real, ())
         self.dx[None], self.cfl[None] = dx, cfl
@@ -110,10 +116,23 @@ class Transfer:
                     total += self.nodes[b * COPY + corner_offset(corner) + inner]
             if total[3] > 0.0:
                 velocity = vec4(total[0] / total[3], total[1] / total[3], total[2] / total[3], total[3])
+                if ti.static(self.has_walls):
+                    velocity = self.walls.hold(self.place(tile, n), velocity)
                 for corner in range(8):
                     b = self.source[tile, corner]
                     if b >= 0:
                         self.nodes[b * COPY + corner_offset(corner) + inner] = velocity
+
+    @ti.func
+    def place(self, tile, n):
+        """Position of node n of a tile [m]."""
+        node = ti.Vector([(n >> 4) & 3, (n >> 2) & 3, n & 3])
+        first = ti.Vector([0, 0, 0])
+        for corner in range(8):
+            b = self.source[tile, corner]
+            if b >= 0:
+                first = 4 * (self.origin[b] + ti.Vector([corner >> 2, (corner >> 1) & 1, corner & 1])) - 1
+        return self.dx[None] * ti.cast(first + node, Real)
 
     @ti.kernel
     def grid_to_particles(self):
@@ -183,21 +202,20 @@ class Transfer:
         dx = self.dx[None]
         local, f = self.locate(p, self.origin[b])
         weights = spline_weights(f)
+        mass, shared = self.particles.mass[p], ti.cast(0.0, Real)
         sum_v, sum_L = vec4(0.0), mat3(0.0)
         start = b * COPY + (local[0] * SPAN + local[1]) * SPAN + local[2]
         for i in range(3):
             for j in range(3):
                 for k in ti.static(range(3)):
-                    weighted = (
-                        weights[0, i] * weights[1, j] * weights[2, k] * self.nodes[start + (i * SPAN + j) * SPAN + k]
-                    )
+                    weight = weights[0, i] * weights[1, j] * weights[2, k]
+                    node = self.nodes[start + (i * SPAN + j) * SPAN + k]
+                    shared += ti.min(weight * mass, node[3] - weight * mass)
+                    weighted = weight * node
                     sum_v += weighted
                     sum_L += vec3(weighted[0], weighted[1], weighted[2]).outer_product(vec3(i, j, k) - f)
-        own = ti.cast(1.0, Real)
-        for axis in ti.static(range(3)):
-            own *= weights[axis, 0] ** 2 + weights[axis, 1] ** 2 + weights[axis, 2] ** 2
         rate = ti.cast(0.0, Real)
-        if sum_v[3] - own * self.particles.mass[p] <= ALONE * self.particles.mass[p]:
+        if shared <= ALONE * mass:
             self.drift(p)
         else:
             rate = self.move(p, vec3(sum_v[0], sum_v[1], sum_v[2]), 4.0 / dx * sum_L)

@@ -77,7 +77,7 @@ def test_stress_turns_with_the_particle():
 
 
 def test_yielding_reaches_the_strength_exactly_and_keeps_direction_and_volume():
-    yielding, X = strained(4000, 0.1, strength=True)
+    yielding, _ = strained(4000, 0.1, strength=True)
     free, _ = strained(4000, 0.1)
     D = yielding["root"] ** 3
     P = rest_pressure(free["j"])

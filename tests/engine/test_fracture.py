@@ -84,7 +84,7 @@ def test_fully_damaged_matter_is_left_alone(name):
 
 @SETS
 def test_one_crack_among_four_grows_at_its_speed_up_to_its_share(name):
-    """Two particles with four flaws each; a hydrostatic tension opens one of the first particle's, three of the second."""
+    """Of two particles with four flaws each, tension opens one flaw of the first and three of the second."""
     flaws = Flaws(np.array([0, 4, 8], dtype=np.int32), np.array([1.0, 3.0, 3.0, 3.0, 1.0, 1.0, 1.0, 3.0]) * 1e-6)
     dt = np.array([0.01, 0.01, 1e3, 1e3]) * CRACK_TIME
     p = np.array([0, 1, 0, 1], dtype=np.int32)

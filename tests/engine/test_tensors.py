@@ -57,7 +57,8 @@ def test_half_log_equals_the_log_of_eigenvalues():
     B = tensors(*SIZES)
     (found,) = evaluate(half_log, B, outputs=SYMMETRIC)
     expected = transform(lambda values: 0.5 * np.log1p(values), B)
-    assert worst(found, expected, norm(expected)) < 1e-12
+    # round-off of some fifty operations; a term of the series too few costs 1e-13
+    assert worst(found, expected, norm(expected)) < 1e-14
 
 
 def test_half_log_holds_for_the_stretch_of_thousandfold_expansion():
@@ -73,7 +74,7 @@ def test_exp_minus_identity_equals_expm1_of_eigenvalues():
     S = traceless(tensors(*SIZES))
     (found,) = evaluate(exp_minus_identity, S, outputs=SYMMETRIC)
     expected = transform(np.expm1, S)
-    assert worst(found, expected, norm(S)) < 1e-12
+    assert worst(found, expected, norm(S)) < 1e-14
 
 
 def test_exp_undoes_half_log():
@@ -83,7 +84,7 @@ def test_exp_undoes_half_log():
 
     S = traceless(tensors(*SIZES))
     (found,) = evaluate(there_and_back, S, outputs=SYMMETRIC)
-    assert worst(found, S, norm(S)) < 1e-12
+    assert worst(found, S, norm(S)) < 1e-14
 
 
 def test_eigensystem_is_orthonormal_and_rebuilds_the_tensor():

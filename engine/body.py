@@ -1,0 +1,112 @@
+"""Bodies a scene can hold: a sphere or a box of equal particles. SI units throughout."""
+
+from abc import abstractmethod
+from typing import Annotated
+
+from pydantic import Field
+
+from engine.materials import Material
+from engine.validation import Frozen, Positive, Vector
+
+PositiveVector = tuple[Positive, Positive, Positive]
+Count = Annotated[int, Field(ge=1)]
+
+
+class Solid(Frozen):
+    """What bodies of every shape have in common."""
+
+    name: str = "body"
+    position: Vector = (0.0, 0.0, 0.0)
+    velocity: Vector = (0.0, 0.0, 0.0)
+    spin: Vector = (0.0, 0.0, 0.0)
+    material: Material = Material()
+    damage: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+
+    @property
+    @abstractmethod
+    def volume(self) -> float:
+        """Volume [m^3] at the reference density."""
+
+    @property
+    @abstractmethod
+    def count(self) -> int:
+        """Number of particles."""
+
+    @property
+    @abstractmethod
+    def reach(self) -> float:
+        """Distance [m] from the centre to the farthest point."""
+
+    @property
+    @abstractmethod
+    def spin_momentum(self) -> Vector:
+        """Angular momentum [kg m^2/s] of the spin."""
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+        return self.material.rho0 * self.volume
+
+    @property
+    def spacing(self) -> float:
+        """Particle spacing h = (m/rho0)^(1/3) [m]."""
+        return float((self.volume / self.count) ** (1.0 / 3.0))
+
+
+class Body(Solid):
+    """A homogeneous sphere of `particles` equal particles."""
+
+    radius: Positive
+    particles: Count
+    hydrostatic: bool = True
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3] at the reference density."""
+        return 4.0 / 3.0 * 3.141592653589793 * self.radius**3
+
+    @property
+    def count(self) -> int:
+        """Number of particles."""
+        return self.particles
+
+    @property
+    def reach(self) -> float:
+        """The radius [m]."""
+        return self.radius
+
+    @property
+    def spin_momentum(self) -> Vector:
+        """Angular momentum [kg m^2/s] of the spin."""
+        x, y, z = (0.4 * self.mass * self.radius**2 * component for component in self.spin)
+        return x, y, z
+
+
+class Box(Solid):
+    """A homogeneous cuboid around `position`: a rectangular lattice of `lattice` particles per edge."""
+
+    size: PositiveVector
+    lattice: tuple[Count, Count, Count]
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3] at the reference density."""
+        return self.size[0] * self.size[1] * self.size[2]
+
+    @property
+    def count(self) -> int:
+        """Number of particles."""
+        return self.lattice[0] * self.lattice[1] * self.lattice[2]
+
+    @property
+    def reach(self) -> float:
+        """Half the diagonal [m]."""
+        return 0.5 * float(sum(edge**2 for edge in self.size) ** 0.5)
+
+    @property
+    def spin_momentum(self) -> Vector:
+        """Angular momentum [kg m^2/s] of the spin."""
+        square = sum(edge**2 for edge in self.size)
+        moments = (self.mass / 12.0 * (square - edge**2) for edge in self.size)
+        x, y, z = (moment * component for moment, component in zip(moments, self.spin, strict=True))
+        return x, y, z

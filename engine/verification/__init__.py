@@ -1,0 +1,1 @@
+"""Scenes with known answers, run by `python -m engine verify`."""

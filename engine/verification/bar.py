@@ -1,0 +1,106 @@
+"""Rock pulled apart at a constant rate (engine/physics.md, sections 2-5)."""
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from engine.body import Body
+from engine.flaws import Flaws, draw_flaws
+from engine.materials import Fracture, Material
+from engine.verification.check import Check, share
+from engine.verification.drive import Array
+from engine.verification.specimen import Specimen
+
+CONTINUUM_PEAK = 9.07e6
+"""Peak stress [Pa] at 1 1/s of the continuum law, which grows with rate^(1/4): a guide, for flaws without end."""
+
+
+@dataclass(frozen=True)
+class Pull:
+    """A laterally confined bar of particles that all stretch at one rate, each with its own flaws.
+
+    Attributes:
+        rate: d ln(length)/dt [1/s].
+        particles: number of particles.
+        radius: of the sphere of the same volume [m]; it sets the weakest flaw.
+        steps: number of time steps.
+        strain: at the end [-].
+    """
+
+    rate: float
+    particles: int = 200
+    radius: float = 1.0
+    steps: int = 2000
+    strain: float = 2e-3
+
+    @property
+    def body(self) -> Body:
+        """The bar, by its volume."""
+        return Body(radius=self.radius, particles=self.particles)
+
+    @property
+    def flaws(self) -> Flaws:
+        """The same flaws for both integrations."""
+        return draw_flaws(self.body, Fracture(), np.random.default_rng(1))
+
+    @property
+    def dt(self) -> float:
+        """Time step [s]."""
+        return self.strain / self.rate / self.steps
+
+    def engine(self) -> Array:
+        """Mean axial stress [Pa] after every step, by the engine's laws."""
+        specimen = Specimen(self.body, Fracture(), self.flaws)
+        return np.array([specimen.stretch(self.rate, self.dt) for _ in range(self.steps)])
+
+    def reference(self) -> Array:
+        """The same from cold rock in NumPy: stretched one way only, its strain is the sum of all increments."""
+        m = self.body.material
+        own = [np.sort(part) for part in np.split(self.flaws.strain, self.flaws.first[1:-1])]
+        growth = 0.4 * m.longitudinal_speed / (3.0 * self.body.spacing)
+        root, mean = np.zeros(self.particles), []
+        for step in range(1, self.steps + 1):
+            e = step * np.log1p(self.rate * self.dt)
+            axial = _stress(e, root**3, m)
+            cracks = np.array(
+                [np.searchsorted(part, s) for part, s in zip(own, axial / m.longitudinal_modulus, strict=True)]
+            )
+            cap = np.cbrt(cracks / [len(part) for part in own])
+            root = np.maximum(root, np.minimum(root + cracks * growth * self.dt, cap))
+            mean.append(axial.mean())
+        return np.array(mean)
+
+
+def _stress(e: float, D: Array, m: Material) -> Array:
+    """Axial Cauchy stress [Pa] at the log strain e: pressure keeps 1 - D of itself, shear is bounded by strength."""
+    mu = np.expm1(-e)
+    pressure = (1.0 - D) * (m.tillotson.A * mu + m.tillotson.B * mu**2)
+    root_J2 = 2.0 * m.shear_modulus * np.exp(-e) * e / np.sqrt(3.0)
+    shear = np.minimum(root_J2, (1.0 - D) * m.cohesion)
+    return np.asarray(2.0 / np.sqrt(3.0) * shear - pressure)
+
+
+@dataclass(frozen=True)
+class Bar:
+    """Peak stress over four decades of strain rate.
+
+    Attributes:
+        rates: strain rates [1/s].
+    """
+
+    name = "bar"
+    rates: tuple[float, ...] = (0.01, 0.1, 1.0, 10.0, 100.0)
+
+    def checks(self) -> list[Check]:
+        """Peak stress against the independent integration, and beside the continuum law."""
+        checks = []
+        for rate in self.rates:
+            bar = Pull(rate)
+            peak, expected = float(bar.engine().max()), float(bar.reference().max())
+            guide = CONTINUUM_PEAK * rate**0.25
+            checks += [
+                share(f"peak stress at {rate:g} /s", "Pa", peak, expected, 0.01),
+                share(f"beside the continuum law at {rate:g} /s", "Pa", peak, guide, inf),
+            ]
+        return checks

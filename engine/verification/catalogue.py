@@ -1,0 +1,41 @@
+"""All verification problems, in a version of seconds and, where it differs, one of minutes."""
+
+from engine.verification.bar import Bar
+from engine.verification.check import Problem
+from engine.verification.cliff import Cliff
+from engine.verification.collapse import Collapse
+from engine.verification.column import Column
+from engine.verification.expansion import Expansion
+from engine.verification.hugoniot import Hugoniot
+from engine.verification.hydrostatic import Hydrostatic
+from engine.verification.orbit import Infall
+from engine.verification.rotation import Rotation
+from engine.verification.rubble import Rubble
+from engine.verification.slope import Slope
+
+SHORT: dict[str, Problem] = {
+    problem.name: problem
+    for problem in (
+        Hydrostatic(),
+        Rotation(),
+        Expansion(),
+        Column(),
+        Hugoniot(),
+        Bar(),
+        Slope(),
+        Collapse(),
+        Infall(),
+        Cliff(),
+        Rubble(),
+    )
+}
+
+FULL: dict[str, Problem] = {
+    **SHORT,
+    "hydrostatic": Hydrostatic(particles=20000, end_time=3000.0),
+    "column": Column(cells=(8, 16, 32, 64, 128)),
+    "hugoniot": Hugoniot(speeds=(25.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)),
+    "collapse": Collapse(particles=(2000, 16000)),
+    "cliff": Cliff(cells=15),
+    "rubble": Rubble(particles=1500),
+}

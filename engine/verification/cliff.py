@@ -1,0 +1,122 @@
+"""Collapse of a granular cliff (engine/physics.md, sections 4 and 11; Jutzi 2015, figure 1)."""
+
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+
+import numpy as np
+
+from engine.body import Box
+from engine.scene import Numerics, Physics, Scene, Wall
+from engine.verification.check import Check, difference
+from engine.verification.drive import Array, Moment, begin, follow
+from engine.verification.rock import elastic
+
+DATA = Path(__file__).parent / "data"
+GRAVITY, DENSITY, WIDTH = 9.81, 2000.0, 1.0
+ASPECT = 3.2
+"""Initial height over width."""
+FRICTION = float(np.tan(np.deg2rad(20.9)))
+THIN = 0.01
+"""Height [L0] at which the front ends."""
+
+REST = 8.0
+"""When the flow has come to rest, in units of sqrt(H0/g)."""
+
+
+@dataclass(frozen=True)
+class Cliff:
+    """A column of rubble between a smooth wall and a rough floor, let go; periodic across.
+
+    Attributes:
+        cells: cells along the initial width, a multiple of five.
+        stiffness: c_l in units of sqrt(g H0).
+    """
+
+    name = "cliff"
+    cells: int = 10
+    stiffness: float = 20.0
+
+    @property
+    def height(self) -> float:
+        """Initial height H0 [m]."""
+        return ASPECT * WIDTH
+
+    @property
+    def fall_time(self) -> float:
+        """sqrt(H0/g) [s]."""
+        return float(np.sqrt(self.height / GRAVITY))
+
+    @property
+    def scene(self) -> Scene:
+        """Four particles a cell in the plane of the flow; wall and floor hold half a cell of it."""
+        dx = WIDTH / self.cells
+        shear = DENSITY * self.stiffness**2 * GRAVITY * self.height / 3.0
+        body = Box(
+            size=(WIDTH, 4.0 * dx, self.height),
+            lattice=(2 * self.cells, 4, round(2 * ASPECT * self.cells)),
+            position=(0.5 * WIDTH - 0.5 * dx, 2.0 * dx, 0.5 * self.height - 0.5 * dx),
+            material=elastic(DENSITY, 5.0 / 3.0 * shear, shear, FRICTION),
+            damage=1.0,
+        )
+        walls = (Wall(normal=(1.0, 0.0, 0.0)), Wall(friction="stick"))
+        return Scene(
+            bodies=(body,),
+            period=(None, 4.0 * dx, None),
+            end_time=REST * self.fall_time,
+            physics=Physics(fracture=None, gravity=None, uniform_gravity=(0.0, 0.0, -GRAVITY), walls=walls),
+            numerics=Numerics(particles_per_cell=4.0),
+        )
+
+    def checks(self) -> list[Check]:
+        """Height and front while it falls and at rest, against the experiments and Jutzi's SPH.
+
+        Only the heights at rest can fail: fronts are single grains, and the codes and the experiments disagree at tau.
+        """
+        moments = self.run()
+        motion = float(np.sqrt(np.mean(moments["final"].speed ** 2)) / np.sqrt(GRAVITY * self.height))
+        checks = [check for when, moment in moments.items() for check in self._compare(when, moment)]
+        return [*checks, difference("speed at rest, over sqrt(g H0)", "-", motion, 0.0, inf)]
+
+    def run(self) -> dict[str, Moment]:
+        """States at sqrt(H0/g) and at rest."""
+        simulation = begin(self.scene)
+        return {"tau": follow(simulation, self.fall_time), "final": follow(simulation, self.scene.end_time)}
+
+    def _compare(self, when: str, moment: Moment) -> list[Check]:
+        L, H = self.profile(moment)
+        front = float(L[H > THIN].max())
+        band, sph = experiment(when), jutzi(when)
+        below, above = (np.interp(band[:, 0], L, H) - band[:, side] for side in (1, 2))
+        outside = float(np.sqrt(np.mean(np.maximum(np.maximum(-below, above), 0.0) ** 2)))
+        middle = float(np.sqrt(np.mean((np.interp(band[:, 0], L, H) - band[:, 1:].mean(axis=1)) ** 2)))
+        beside = float(np.sqrt(np.mean((np.interp(sph[:, 0], L, H) - sph[:, 1]) ** 2)))
+        allowed = 0.1 if when == "final" else inf
+        return [
+            difference(f"{when}: RMS of H outside the experiments", "L0", outside, 0.0, allowed),
+            difference(f"{when}: RMS of H from their middle", "L0", middle, 0.0, inf),
+            difference(f"{when}: RMS of H from Jutzi's SPH", "L0", beside, 0.0, allowed),
+            difference(f"{when}: front", "L0", front, float(sph[sph[:, 1] > THIN, 0].max()), inf),
+        ]
+
+    def profile(self, moment: Moment) -> tuple[Array, Array]:
+        """Height of the surface over distance from the wall, both in L0, in strips of one cell.
+
+        The area a strip holds is its height: rubble that flies above the surface does not count twice.
+        """
+        dx = WIDTH / self.cells
+        strip = np.floor((moment.x[:, 0] + 0.5 * dx) / dx).astype(int)
+        area = np.bincount(np.maximum(strip, 0), weights=moment.J) * self.scene.bodies[0].spacing ** 3 / (4.0 * dx)
+        return np.asarray((np.arange(len(area)) + 0.5) * dx / WIDTH), np.asarray(area / dx / WIDTH)
+
+
+def experiment(when: str) -> Array:
+    """Distance, lowest and highest height of the experiments, in L0, shape [points, 3]."""
+    return np.loadtxt(DATA / f"lajeunesse2005_band_via_jutzi2015_{when}.csv", delimiter=",", skiprows=1)
+
+
+def jutzi(when: str) -> Array:
+    """Distance and height of Jutzi's SPH with constant friction, in L0: the upper envelope, shape [points, 2]."""
+    outline = np.loadtxt(DATA / f"jutzi2015_fig1_DP_{when}.csv", delimiter=",", skiprows=1)
+    distance = np.unique(outline[:, 0])
+    return np.array([[L, outline[outline[:, 0] == L, 1].max()] for L in distance])

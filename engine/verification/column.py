@@ -1,0 +1,111 @@
+"""Elastic waves in a laterally confined column (engine/physics.md, sections 1-3)."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+
+import numpy as np
+from scipy.optimize import curve_fit
+
+from engine.body import Box
+from engine.initial import initial_state
+from engine.materials import Material
+from engine.scene import Numerics, Physics, Scene
+from engine.verification.check import Check, difference, share
+from engine.verification.drive import Array, begin, fitted_order, follow
+
+
+@dataclass(frozen=True)
+class StandingWave:
+    """One wavelength of a standing longitudinal wave, periodic along all axes.
+
+    Attributes:
+        cells: cells along the wavelength, a multiple of four.
+        length: wavelength [m].
+        amplitude: of velocity [m/s]; the strain stays near 1e-7.
+        periods: duration in exact periods.
+    """
+
+    cells: int
+    length: float = 1000.0
+    amplitude: float = 1e-3
+    periods: float = 1.0
+
+    @property
+    def dx(self) -> float:
+        """Grid spacing [m]."""
+        return self.length / self.cells
+
+    @property
+    def period(self) -> float:
+        """Exact period [s], wavelength over sqrt((K + 4G/3)/rho)."""
+        return self.length / Material().longitudinal_speed
+
+    @property
+    def scene(self) -> Scene:
+        """Intact basalt, two particles a cell along the wave and one across."""
+        size = (self.length, 4.0 * self.dx, 4.0 * self.dx)
+        centre = (0.5 * size[0], 0.5 * size[1], 0.5 * size[2])
+        return Scene(
+            bodies=(Box(size=size, lattice=(2 * self.cells, 4, 4), position=centre),),
+            period=size,
+            end_time=self.periods * self.period,
+            physics=Physics(strength=False, fracture=None, gravity=None),
+            numerics=Numerics(particles_per_cell=2.0),
+        )
+
+    @cached_property
+    def amplitudes(self) -> tuple[Array, Array]:
+        """Times [s] and the amplitude of velocity [m/s] at them."""
+        scene = self.scene
+        x = initial_state(scene)["x"][:, 0]
+        k = 2.0 * np.pi / self.length
+        C = np.zeros((len(x), 3, 3))
+        C[:, 0, 0] = self.amplitude * k * np.cos(k * x)
+        wave = np.stack([self.amplitude * np.sin(k * x), 0.0 * x, 0.0 * x], axis=1)
+        simulation = begin(scene, v=wave, C=C)
+        moments = [follow(simulation, time) for time in np.linspace(0.0, scene.end_time, 65)]
+        projected = [2.0 * float(np.mean(moment.v[:, 0] * np.sin(k * x))) for moment in moments]
+        return np.array([moment.time for moment in moments]), np.array(projected)
+
+    @property
+    def fitted(self) -> tuple[float, float]:
+        """Frequency and damping rate [1/s] of the wave."""
+        times, amplitudes = self.amplitudes
+        guess = (2.0 * np.pi / self.period, 0.0, self.amplitude, 0.0)
+        (omega, gamma, _, _), _ = curve_fit(_damped, times, amplitudes, p0=guess)
+        return float(omega), float(gamma)
+
+    @property
+    def speed(self) -> float:
+        """Phase speed [m/s]."""
+        return self.fitted[0] * self.length / (2.0 * np.pi)
+
+
+@dataclass(frozen=True)
+class Column:
+    """Speed of longitudinal waves, and how fast its error falls with dx.
+
+    Attributes:
+        cells: resolutions, in cells per wavelength.
+    """
+
+    name = "column"
+    cells: tuple[int, ...] = (8, 16, 32)
+
+    def checks(self) -> list[Check]:
+        """Speed and damping at the finest resolution, and the order of convergence of the speed."""
+        waves = [StandingWave(cells) for cells in self.cells]
+        exact = Material().longitudinal_speed
+        errors = [abs(wave.speed - exact) for wave in waves]
+        order = fitted_order([wave.dx for wave in waves], errors)
+        damping = waves[-1].fitted[1] * waves[-1].period
+        return [
+            share(f"speed, {self.cells[-1]} cells per wavelength", "m/s", waves[-1].speed, exact, 0.01),
+            difference("amplitude lost in one period", "-", 1.0 - float(np.exp(-damping)), 0.0, inf),
+            Check("order of the speed in dx", "-", order, 2.0, max(0.0, 2.0 - order), 0.3),
+        ]
+
+
+def _damped(t: Array, omega: float, gamma: float, amplitude: float, phase: float) -> Array:
+    return np.asarray(amplitude * np.exp(-gamma * t) * np.cos(omega * t + phase))

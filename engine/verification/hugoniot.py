@@ -1,0 +1,154 @@
+"""Shock waves in basalt (engine/physics.md, sections 2 and 6)."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq
+
+from engine.body import Box
+from engine.initial import initial_state
+from engine.materials import Material
+from engine.scene import Numerics, Physics, Scene, Viscosity
+from engine.verification.check import Check, share
+from engine.verification.drive import Array, Moment, begin, follow
+
+BASALT = Material()
+
+PLATEAU = (0.3, 0.8)
+"""Where the state behind the front is read, as shares of its distance: off the heated plane of impact and the front."""
+
+
+@dataclass(frozen=True)
+class Shock:
+    """The exact state behind a shock in Tillotson's basalt at rest without pressure, from the jump conditions.
+
+    Attributes:
+        up: particle velocity behind the front [m/s].
+    """
+
+    up: float
+
+    @cached_property
+    def Us(self) -> float:
+        """Shock speed [m/s]: the root of rho0 Us up = P(rho0 Us/(Us - up), up^2/2)."""
+        least = (BASALT.tillotson.A / BASALT.rho0) ** 0.5
+
+        def excess(Us: float) -> float:
+            return BASALT.rho0 * Us * self.up - self._pressure(self.up / (Us - self.up))
+
+        return float(brentq(excess, self.up + 0.5 * least, 10.0 * (self.up + least), xtol=1e-9))
+
+    @property
+    def E(self) -> float:
+        """Specific internal energy [J/kg]."""
+        return 0.5 * self.up**2
+
+    @property
+    def P(self) -> float:
+        """Pressure [Pa]."""
+        return BASALT.rho0 * self.Us * self.up
+
+    @property
+    def compression(self) -> float:
+        """rho/rho0 - 1 [-]."""
+        return self.up / (self.Us - self.up)
+
+    def _pressure(self, mu: float) -> float:
+        """Tillotson's compressed branch [Pa]."""
+        t, rho = BASALT.tillotson, BASALT.rho0 * (1.0 + mu)
+        hot = t.a + t.b / (self.E / (t.E0 * (1.0 + mu) ** 2) + 1.0)
+        return hot * rho * self.E + t.A * mu + t.B * mu**2
+
+
+@dataclass(frozen=True)
+class Impact:
+    """Two strengthless slabs meet at 2 up; periodic across.
+
+    Attributes:
+        up: half their relative speed [m/s].
+        cells: thickness of one slab in cells.
+        dx: grid spacing [m]; the problem has no scale but this one.
+    """
+
+    up: float
+    cells: int = 80
+    dx: float = 1.0
+
+    @property
+    def scene(self) -> Scene:
+        """Until the front is through nine tenths of the slabs."""
+        across = 4.0 * self.dx
+        body = Box(
+            size=(2.0 * self.cells * self.dx, across, across),
+            lattice=(4 * self.cells, 4, 4),
+            position=(0.0, 0.5 * across, 0.5 * across),
+        )
+        shock = Viscosity(shock_linear=0.5, shock_quadratic=1.5)
+        return Scene(
+            bodies=(body,),
+            period=(None, across, across),
+            end_time=0.9 * self.cells * self.dx / Shock(self.up).Us,
+            physics=Physics(shear=False, strength=False, fracture=None, gravity=None, viscosity=shock),
+            numerics=Numerics(particles_per_cell=2.0),
+        )
+
+    def measure(self) -> dict[str, float]:
+        """Us, P, rho/rho0 - 1 and E of the run."""
+        scene = self.scene
+        x = initial_state(scene)["x"][:, 0]
+        simulation = begin(scene, v=np.outer(-self.up * np.sign(x), [1.0, 0.0, 0.0]))
+        half, end = (follow(simulation, part * scene.end_time) for part in (0.5, 1.0))
+        first, last = _front(half), _front(end)
+        distance = np.abs(end.x[:, 0])
+        plateau = (distance > PLATEAU[0] * last) & (distance < PLATEAU[1] * last)
+        return {
+            "Us": self.up + (last - first) / (end.time - half.time),
+            "P": float(end.P[plateau].mean()),
+            "compression": float((1.0 / end.J[plateau]).mean() - 1.0),
+            "E": float(end.state["E"][plateau].mean()),
+        }
+
+
+@dataclass(frozen=True)
+class Hugoniot:
+    """States behind shocks against the exact Hugoniot.
+
+    Attributes:
+        speeds: particle velocities [m/s].
+    """
+
+    name = "hugoniot"
+    speeds: tuple[float, ...] = (100.0, 500.0, 2000.0)
+
+    def checks(self) -> list[Check]:
+        """Us - c0 within 10 % for weak shocks; Us, P and rho/rho0 - 1 within 2 % and E within 5 % for strong ones."""
+        return [check for up in self.speeds for check in _compare(Shock(up), Impact(up).measure())]
+
+
+def _compare(exact: Shock, found: dict[str, float]) -> list[Check]:
+    at = f"{exact.up:.0f} m/s: "
+    sound = (BASALT.tillotson.A / BASALT.rho0) ** 0.5
+    if exact.up < 0.05 * sound:
+        return [share(at + "Us - c0", "m/s", found["Us"] - sound, exact.Us - sound, 0.10)]
+    return [
+        share(at + "Us", "m/s", found["Us"], exact.Us, 0.02),
+        share(at + "P", "Pa", found["P"], exact.P, 0.02),
+        share(at + "rho/rho0 - 1", "-", found["compression"], exact.compression, 0.02),
+        share(at + "E", "J/kg", found["E"], exact.E, 0.05),
+    ]
+
+
+def _front(moment: Moment) -> float:
+    """Distance [m] of the fronts from the plane of impact: where P falls through half its plateau."""
+    distance = np.abs(moment.x[:, 0])
+    order = np.argsort(distance, kind="stable")
+    r, P = _means(distance[order]), _means(moment.P[order])
+    level = 0.5 * float(np.median(P[0.5 * P.max() < P]))
+    last = int(np.flatnonzero(level < P)[-1])
+    return float(np.interp(level, [P[last + 1], P[last]], [r[last + 1], r[last]]))
+
+
+def _means(sorted_values: Array) -> Array:
+    """Means over the 32 particles of each pair of layers, one on either side of the plane."""
+    return np.asarray(sorted_values.reshape(-1, 32).mean(axis=1))

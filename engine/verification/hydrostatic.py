@@ -1,0 +1,48 @@
+"""A body at rest under its own gravity (engine/physics.md, sections 7 and 8)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.body import Body
+from engine.orbit import G
+from engine.scene import Scene
+from engine.verification.check import Check, difference
+from engine.verification.drive import Array, begin, follow
+
+
+@dataclass(frozen=True)
+class Hydrostatic:
+    """A sphere alone, in balance from the start: it must stay at rest, keep its pressure, and not break.
+
+    Attributes:
+        particles: number of particles.
+        end_time: how long it must stay so [s].
+    """
+
+    name = "hydrostatic"
+    particles: int = 2000
+    end_time: float = 600.0
+
+    @property
+    def body(self) -> Body:
+        """The sphere."""
+        return Body(radius=50e3, particles=self.particles)
+
+    def pressure(self, r: Array) -> Array:
+        """P(r) = (2/3) pi G rho^2 (R^2 - r^2) [Pa] at distances r [m] from the centre."""
+        body = self.body
+        return np.asarray(2.0 / 3.0 * np.pi * G * body.material.rho0**2 * (body.radius**2 - r**2))
+
+    def checks(self) -> list[Check]:
+        """Pressure, speed and damage after `end_time`."""
+        end = follow(begin(Scene(bodies=(self.body,), end_time=self.end_time)), self.end_time)
+        r = np.linalg.norm(end.x - end.x.mean(axis=0), axis=1)
+        centre = float(self.pressure(np.zeros(1))[0])
+        deviation = float(np.sqrt(np.mean((end.P - self.pressure(r)) ** 2)))
+        motion = float(np.sqrt(np.mean(end.speed**2)))
+        return [
+            Check("RMS of P - P(r), as a share of P(0)", "Pa", deviation, 0.0, deviation / centre, 0.03),
+            difference("speed, RMS", "m/s", motion, 0.0, 0.01),
+            difference("share of broken particles", "-", float(np.mean(end.damage > 0.0)), 0.0, 0.001),
+        ]

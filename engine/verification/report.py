@@ -1,0 +1,74 @@
+"""Running verification problems one after the other, and their results as a table."""
+
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from math import inf
+
+from rich.table import Table
+
+from engine import backend
+from engine.errors import RunFault
+from engine.verification.check import Check, Problem
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one problem reported.
+
+    Attributes:
+        name: of the problem.
+        checks: its comparisons; none when it broke off.
+        wall_time: computing time [s].
+        fault: why it broke off, or empty.
+    """
+
+    name: str
+    checks: list[Check]
+    wall_time: float
+    fault: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether it ran to its end and every error is allowed."""
+        return not self.fault and all(check.passed for check in self.checks)
+
+
+def run_all(problems: Iterable[Problem], arch: str, threads: int) -> Iterator[Result]:
+    """Results of the problems, each in a fresh Taichi program."""
+    for problem in problems:
+        backend.start(arch, threads)
+        begun = time.monotonic()
+        try:
+            checks, fault = problem.checks(), ""
+        except RunFault as error:
+            checks, fault = [], str(error)
+        yield Result(problem.name, checks, time.monotonic() - begun, fault)
+
+
+def table(results: Iterable[Result]) -> Table:
+    """Scene, quantity, measured, expected, error, allowed and run time."""
+    result_table = Table("scene", "quantity", "unit")
+    for column in ("measured", "expected", "error", "allowed", "time [s]"):
+        result_table.add_column(column, justify="right")
+    result_table.add_column("")
+    for result in results:
+        for row in _rows(result):
+            result_table.add_row(*row)
+        result_table.add_section()
+    return result_table
+
+
+def _rows(result: Result) -> Iterator[list[str]]:
+    wall_time = f"{result.wall_time:.1f}"
+    if result.fault:
+        yield [result.name, result.fault, "", "", "", "", "", wall_time, "[red]failed[/]"]
+    for number, check in enumerate(result.checks):
+        first = number == 0
+        numbers = [f"{check.measured:.6g}", f"{check.expected:.6g}", f"{check.error:.2g}", _allowed(check)]
+        start = [result.name if first else "", check.quantity, check.unit]
+        yield [*start, *numbers, wall_time if first else "", "ok" if check.passed else "[red]failed[/]"]
+
+
+def _allowed(check: Check) -> str:
+    return "reported" if check.allowed == inf else f"{check.allowed:g}"

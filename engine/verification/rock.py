@@ -1,0 +1,18 @@
+"""Materials of verification problems: simple limits of Tillotson's rock."""
+
+from engine.materials import Material, Tillotson
+
+NEGLIGIBLE = 1e-12
+"""Grueneisen constants so small that heat makes no pressure."""
+
+
+def elastic(rho0: float, bulk: float, shear: float, friction: float = 0.0) -> Material:
+    """Matter of constant moduli, P = K (rho/rho0 - 1), without cohesion.
+
+    Args:
+        rho0: density [kg/m^3].
+        bulk, shear: moduli [Pa].
+        friction: coefficient mu_d once damaged [-].
+    """
+    cold = Tillotson(a=NEGLIGIBLE, b=NEGLIGIBLE, A=bulk, B=0.0)
+    return Material(rho0=rho0, tillotson=cold, shear_modulus=shear, damaged_friction=friction)

@@ -1,0 +1,50 @@
+"""Particles that follow a prescribed deformation, without a grid."""
+
+import numpy as np
+import taichi as ti
+
+from engine import materials
+from engine.backend import Real, mat3
+from engine.body import Body
+from engine.constitution import Constitution
+from engine.flaws import Flaws
+from engine.fracture import Fracture
+from engine.particles import Particles
+from engine.strength import Strength
+from engine.tillotson import Tillotson
+from engine.viscosity import Inviscid
+
+
+@ti.data_oriented
+class Specimen:
+    """All particles of one body under the same velocity gradient, with every law of rock.
+
+    Args:
+        body: sets material, spacing and number of particles.
+        rule: rules of fracture.
+        flaws: flaws of the particles.
+    """
+
+    def __init__(self, body: Body, rule: materials.Fracture, flaws: Flaws) -> None:
+        self.particles = Particles(body.count)
+        rock = [body.material]
+        self.constitution = Constitution(
+            self.particles,
+            Tillotson(rock),
+            Strength(rock),
+            Fracture([body], rule, flaws),
+            Inviscid(),
+            rock,
+            True,
+        )
+
+    def stretch(self, rate: float, dt: float) -> float:
+        """Mean axial stress [Pa] after a step of length dt [s] at a strain rate [1/s] along x."""
+        self._update(rate, dt)
+        state = self.particles.read("tau", "j")
+        return float(np.mean(state["tau"][:, 0] / (1.0 + state["j"])))
+
+    @ti.kernel
+    def _update(self, rate: ti.f64, dt: ti.f64):
+        for p in range(self.particles.count):
+            self.constitution.update(p, mat3(rate, 0, 0, 0, 0, 0, 0, 0, 0), ti.cast(dt, Real))

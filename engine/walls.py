@@ -1,0 +1,57 @@
+"""Rigid planes that hold the grid back (engine/physics.md, section 11)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from engine.backend import Real, vec3, vec4
+from engine.scene import Wall
+
+STICK = -1.0
+"""Entry for the friction coefficient of a wall that sticks."""
+
+
+@ti.data_oriented
+class Walls:
+    """Velocity that planes leave to nodes on or behind them; a node may always leave a wall that does not stick.
+
+    Args:
+        walls: the scene's walls, at least one.
+    """
+
+    def __init__(self, walls: Sequence[Wall]) -> None:
+        self.count = len(walls)
+        self.table = ti.types.struct(normal=vec3, level=Real, friction=Real).field(shape=self.count)
+        for i, wall in enumerate(walls):
+            normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
+            self.table.normal[i] = normal
+            self.table.level[i] = float(normal @ wall.point)
+            self.table.friction[i] = STICK if wall.friction == "stick" else wall.friction
+
+    @ti.func
+    def hold(self, x, velocity):
+        """Velocity [m/s] and, unchanged, the mass [kg] of a node at x [m]."""
+        v = vec3(velocity[0], velocity[1], velocity[2])
+        for i in range(self.count):
+            wall = self.table[i]
+            if x.dot(wall.normal) <= wall.level:
+                v = contact(v, wall.normal, wall.friction)
+        return vec4(v[0], v[1], v[2], velocity[3])
+
+
+@ti.func
+def contact(v, normal, friction):
+    """Velocity after contact: nothing moves into the wall, and Coulomb's impulse slows what slides along it."""
+    result = v
+    inward = -v.dot(normal)
+    if friction < 0.0:
+        result = vec3(0.0)
+    elif inward > 0.0:
+        along = v + inward * normal
+        speed = along.norm()
+        share = ti.cast(0.0, Real)
+        if speed > friction * inward:
+            share = 1.0 - friction * inward / speed
+        result = share * along
+    return result

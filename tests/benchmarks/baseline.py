@@ -1,0 +1,59 @@
+"""The same state stepped the usual way, and how far it then is from the engine's."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from engine.constitution import Constitution
+from engine.particles import Arrays, Particles
+from engine.simulation import Simulation
+from tests.benchmarks.contact import take_step
+from tests.benchmarks.dense import DenseTransfer
+from tests.benchmarks.stretch import StretchConstitution
+
+QUANTITIES = ("x", "v", "J", "damage")
+ROUND_OFF = 1e-13
+"""Largest difference after 20 steps on the usual grid, in units of dx, of the largest speed, and of 1."""
+ROUND_OFF_SVD = 1e-8
+"""The same with `ti.svd`, whose U S V^T is F only to 2e-10, and each particle that yields is rebuilt from it."""
+
+
+def baseline(simulation: Simulation) -> DenseTransfer:
+    """The usual way, with a singular value decomposition, from the state of `simulation`."""
+    return _dense(simulation, StretchConstitution)
+
+
+def dense_grid_only(simulation: Simulation) -> DenseTransfer:
+    """The usual grid with the engine's own constitution, from the state of `simulation`."""
+    return _dense(simulation, Constitution)
+
+
+def _dense(simulation: Simulation, kind: type[Constitution]) -> DenseTransfer:
+    state, own = simulation.particles.read(), simulation.constitution
+    particles = Particles(simulation.particles.count)
+    particles.write(state)
+    materials = [body.material for body in simulation.scene.bodies]
+    parts = (own.pressure, own.strength, own.fracture, own.viscosity)
+    return DenseTransfer(particles, kind(particles, *parts, materials, own.shear), simulation.scene.dx)
+
+
+def differences(simulation: Simulation, other: DenseTransfer) -> dict[str, float]:
+    """Largest difference of any particle, in units of dx, of the largest speed, and of 1."""
+    here, there = _outcome(simulation.particles), _outcome(other.particles)
+    if isinstance(other.constitution, StretchConstitution):
+        there["J"] = other.constitution.volume_ratio()
+    scale = {"x": simulation.scene.dx, "v": float(np.abs(here["v"]).max())}
+    return {name: float(np.abs(here[name] - there[name]).max()) / scale.get(name, 1.0) for name in QUANTITIES}
+
+
+def _outcome(particles: Particles) -> Arrays:
+    state = particles.read("x", "v", "j", "root")
+    return {"x": state["x"], "v": state["v"], "J": 1.0 + state["j"], "damage": state["root"] ** 3}
+
+
+def step_together(simulation: Simulation, others: Sequence[DenseTransfer], steps: int) -> None:
+    """Advance all by the same time steps."""
+    for _ in range(steps):
+        dt = take_step(simulation)
+        for other in others:
+            other.step(dt)

@@ -1,0 +1,91 @@
+"""The figures as one table."""
+
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+PHASE_TITLES = {"particles_to_grid": "P2G", "update_grid": "grid", "grid_to_particles": "G2P"}
+TITLES = (
+    "particles",
+    "threads",
+    *PHASE_TITLES.values(),
+    "step",
+    "least",
+    "CPU",
+    "10^6 p-steps/s",
+    "rel. cost",
+    "rebuild",
+    "gravity",
+    "B/particle",
+)
+
+Results = dict[str, Any]
+
+
+def print_report(results: Results) -> None:
+    """Print the table of sizes, and below it the figures that belong to one size or none."""
+    console = Console(width=150)
+    host = results["host"]
+    console.print(
+        f"{results['date']}, {host['cores']} cores, {host['cpu']}, Taichi {host['taichi']}, {results['precision']}, "
+        f"commit {results['commit']}; ms per step: medians, least, CPU time of all threads"
+    )
+    table = Table(*TITLES)
+    for row in results["sizes"]:
+        table.add_row(*_cells(row, _reference(results["sizes"], row["threads"])))
+    console.print(table)
+    for line in _lines(results):
+        console.print(line, highlight=False)
+
+
+def _cells(row: Results, reference: Results) -> list[str]:
+    step, gravity, rebuild = row["step"], row["gravity"], row["rebuild"]
+    return [
+        f"{row['particles']:,}",
+        str(row["threads"]),
+        *(f"{row['phases'][name]['median_ms']:.2f}" for name in PHASE_TITLES),
+        f"{step['median_ms']:.2f}",
+        f"{step['least_ms']:.2f}",
+        f"{step['cpu_ms']:.2f}",
+        f"{1e-3 * row['particles'] / step['least_ms']:.2f}",
+        f"{_per_particle(row) / _per_particle(reference):.2f}",
+        f"{rebuild['median_ms']:.1f}" if rebuild["count"] else "-",
+        f"{gravity['median_ms']:.1f}",
+        f"{row['bytes']['state_used']:.0f} of {row['bytes']['state']:.0f}",
+    ]
+
+
+def _per_particle(row: Results) -> float:
+    return float(row["step"]["cpu_ms"] / row["particles"])
+
+
+def _reference(sizes: list[Results], threads: int) -> Results:
+    """The row of 2 x 20,000 particles."""
+    return next(row for row in sizes if row["particles"] == 40_000 and row["threads"] == threads)
+
+
+def _lines(results: Results) -> list[str]:
+    baseline, dense = results["baseline"]["baseline"], results["baseline"]["dense_grid_only"]
+    startup = results["startup"]
+    return [
+        *(
+            f"cost ~ N^{row['least_ms']:.3f} (least), N^{row['cpu_ms']:.3f} (CPU) on {row['threads']} threads"
+            for row in results["slopes"]
+        ),
+        f"usual way / engine: {baseline['ratio']:.2f} (CPU {baseline['ratio_of_cpu']:.2f}); "
+        f"dense atomic grid only: {dense['ratio']:.2f} (CPU {dense['ratio_of_cpu']:.2f})",
+        *(_limit(limit, used) for limit, used in zip(results["limits"], results["used"], strict=True)),
+        f"start of a tiny run: {startup['cold']['wall']:.1f} s cold (CPU {startup['cold']['cpu']:.1f}), "
+        f"{startup['warm']['wall']:.1f} s warm (CPU {startup['warm']['cpu']:.1f})",
+        f"load of the machine: {results['load_before']:.1f} before, {results['load_after']:.1f} after",
+    ]
+
+
+def _limit(limit: Results, used: Results) -> str:
+    return (
+        f"{limit['threads']} threads: {1e-9 * limit['bytes_per_second']:.1f} GB/s copied, "
+        f"{1e-9 * limit['operations_per_second']:.0f} Gflop/s; a step uses {100 * used['bandwidth']:.1f} % of the one "
+        f"({used['bytes_per_particle_step']:.0f} B per particle) and {100 * used['arithmetic']:.1f} % of the other "
+        f"({used['operations_per_particle_step']} operations)"
+    )

@@ -1,0 +1,66 @@
+"""Time of the engine's step and of its kernels, at one size on a number of threads."""
+
+from typing import Any
+
+from engine import backend
+from engine.scene import Gravity
+from engine.simulation import Simulation
+from tests.benchmarks.child import answer
+from tests.benchmarks.contact import collision, in_contact, make_ready
+from tests.benchmarks.memory import allocated, bytes_per_step
+from tests.benchmarks.stopwatch import Stopwatch, total
+
+PHASES = ("particles_to_grid", "update_grid", "grid_to_particles")
+GRAVITY_CALLS = 3
+
+
+def measure(particles: int, threads: int, contact: float, steps: int) -> dict[str, Any]:
+    """Times of `steps` steps of two bodies of `particles` each, from `contact` [s] after they met."""
+    backend.start(threads=threads)
+    simulation = in_contact(collision(particles), contact)
+    watches, rebuild = time_steps(simulation, steps)
+    return {
+        "particles": simulation.particles.count,
+        "threads": threads,
+        "time": simulation.time,
+        "dt": float(simulation.clock.dt[None]),
+        "blocks": int(simulation.transfer.block_count[None]),
+        "damaged": float((simulation.particles.read("root")["root"] >= 1.0).mean()),
+        "steps": steps,
+        "step": total(watches).summary(),
+        "phases": {name: watch.summary() for name, watch in zip(PHASES, watches, strict=True)},
+        "rebuild": {**rebuild.summary(), "count": len(rebuild.wall)},
+        "gravity": gravity(particles).summary(),
+        "bytes": {**allocated(simulation), "traffic": bytes_per_step(simulation)},
+    }
+
+
+def time_steps(simulation: Simulation, steps: int) -> tuple[list[Stopwatch], Stopwatch]:
+    """Watches of the kernels of `steps` steps, and of the rebuilding of blocks between them."""
+    watches, rebuild = [Stopwatch() for _ in PHASES], Stopwatch()
+    before = simulation.step
+    for _ in range(steps):
+        if simulation.clock.moved_out[None]:
+            with rebuild.lap():
+                make_ready(simulation)
+        for name, watch in zip(PHASES, watches, strict=True):
+            with watch.lap():
+                getattr(simulation.transfer, name)()
+    assert simulation.step == before + steps, "the clock paused a step that was timed"
+    return watches, rebuild
+
+
+def gravity(particles: int) -> Stopwatch:
+    """Time of evaluations of gravity at the start of the same scene."""
+    simulation, watch = Simulation(collision(particles, Gravity())), Stopwatch()
+    simulation.start()
+    assert simulation.gravity
+    simulation.gravity.accelerate(ahead=0.0)
+    for _ in range(GRAVITY_CALLS):
+        with watch.lap():
+            simulation.gravity.accelerate(ahead=0.0)
+    return watch
+
+
+if __name__ == "__main__":
+    answer(measure)

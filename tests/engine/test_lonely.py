@@ -1,0 +1,47 @@
+"""Particles that share no node with another."""
+
+import numpy as np
+import pytest
+
+from tests.engine.moving import advance, body, scene, started
+
+pytestmark = pytest.mark.usefixtures("taichi")
+
+
+@pytest.mark.parametrize("gap", [3.5, 1000.0])
+def test_a_lonely_particle_flies_straight_with_a_frozen_state(gap):
+    """Also when its block has neighbours, as long as it shares no node."""
+    one = body(particles=1, position=(0.0, 0.0, 0.0), velocity=(150.0, 0.0, 80.0))
+    dx = scene(one).dx
+    crowd = body(particles=40, radius=50e3 * 40 ** (1 / 3), velocity=(150.0, 0.0, 80.0))
+    centre = crowd["radius"] + gap * dx
+    given = scene(one, {**crowd, "position": (0.0, centre, 0.0)})
+    generator = np.random.default_rng(3)
+    state = {
+        "C": 1e-4 * generator.normal(size=(41, 3, 3)),
+        "B": 1e-3 * generator.normal(size=(41, 6)),
+        "tau": np.zeros((41, 6)),
+        "j": 1e-3 * generator.random(41),
+        "E": generator.random(41),
+        "root": np.full(41, 0.5),
+    }
+    state["C"][1:] = 0.0
+    simulation = advance(started(given, **state), 40)
+    found = simulation.particles.read("x", "v", "C", "B", "tau", "j", "E", "root")
+    for name in ("B", "tau", "j", "E", "root"):
+        assert np.array_equal(found[name][0], state[name][0])
+    assert np.array_equal(found["v"][0], [150.0, 0.0, 80.0])
+    np.testing.assert_allclose(found["x"][0], simulation.time * found["v"][0], rtol=1e-13)
+    assert np.array_equal(found["C"][0], 0.5 * (state["C"][0] - state["C"][0].T))
+
+
+def test_lonely_particles_on_a_collision_course_meet():
+    one = body(particles=1)
+    dx = scene(one).dx
+    left = {**one, "position": (-5.0 * dx, 0.0, 0.0), "velocity": (200.0, 0.0, 0.0)}
+    right = {**one, "position": (5.0 * dx, 0.0, 0.0), "velocity": (-200.0, 0.0, 0.0)}
+    simulation = started(scene(left, right, end_time=20.0 * dx / 200.0))
+    while not simulation.finished:
+        simulation.advance(simulation.scene.end_time)
+    found = simulation.particles.read("x", "v")
+    assert found["x"][0, 0] < found["x"][1, 0], "neither has passed through the other"

@@ -1,0 +1,119 @@
+import json
+import multiprocessing
+import os
+import re
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from engine.errors import JobError
+from engine.storage import is_finite, read_dataset, write_atomically, write_dataset, write_json
+
+
+def dataset(count: int = 50) -> xr.Dataset:
+    generator = np.random.default_rng(1)
+    return xr.Dataset(
+        {"x": (("particle", "space"), generator.normal(size=(count, 3))), "body": ("particle", np.arange(count))},
+        attrs={"time": 1.5, "note": "text"},
+    )
+
+
+def test_a_new_file_takes_the_place_of_the_old_one_as_a_whole(tmp_path: Path):
+    path = tmp_path / "file"
+    for content in ("old", "new and longer", "short"):
+        write_atomically(path, lambda partial, content=content: partial.write_text(content))
+        assert path.read_text() == content
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("before", [None, "old"])
+def test_a_writer_that_raises_leaves_everything_as_it_was(tmp_path: Path, before: str | None):
+    path = tmp_path / "file"
+    if before is not None:
+        path.write_text(before)
+
+    def half(partial: Path) -> None:
+        partial.write_text("half")
+        raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"):
+        write_atomically(path, half)
+    assert list(tmp_path.iterdir()) == ([] if before is None else [path])
+    assert before is None or path.read_text() == before
+
+
+def die_while_writing(path: Path) -> None:
+    def half(partial: Path) -> None:
+        partial.write_text("half")
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    write_atomically(path, half)
+
+
+def test_a_killed_writer_leaves_no_file_under_the_final_name(tmp_path: Path):
+    path = tmp_path / "final.nc"
+    writer = multiprocessing.get_context("spawn").Process(target=die_while_writing, args=(path,))
+    writer.start()
+    writer.join()
+    assert writer.exitcode == -signal.SIGKILL
+    assert not path.exists()
+    # what it leaves carries another name, and nothing that looks for results would take it for one
+    assert all(re.fullmatch(r"\..*\.partial", left.name) for left in tmp_path.iterdir())
+
+
+def test_json_is_whole_and_sorted(tmp_path: Path):
+    write_json(tmp_path / "status.json", {"b": 1, "a": [1.5, "x"]})
+    text = (tmp_path / "status.json").read_text()
+    assert json.loads(text) == {"a": [1.5, "x"], "b": 1}
+    assert text.index('"a"') < text.index('"b"')
+
+
+def test_json_that_cannot_be_written_leaves_the_old_file(tmp_path: Path):
+    path = tmp_path / "status.json"
+    write_json(path, {"a": 1})
+    with pytest.raises(TypeError):
+        write_json(path, {"a": object()})
+    assert json.loads(path.read_text()) == {"a": 1}
+
+
+def test_a_dataset_is_read_as_it_was_written(tmp_path: Path):
+    write_dataset(tmp_path / "data.nc", dataset())
+    found = read_dataset(tmp_path / "data.nc")
+    xr.testing.assert_identical(found, dataset())
+    assert found["x"].values.tobytes() == dataset()["x"].values.tobytes()
+
+
+def test_equal_datasets_make_equal_files(tmp_path: Path):
+    for name in ("one.nc", "other.nc"):
+        write_dataset(tmp_path / name, dataset())
+    assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "other.nc").read_bytes()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.001, 0.1, 0.5, 0.9, 0.99])
+def test_a_netcdf_file_that_was_cut_off_is_an_error(tmp_path: Path, share: float):
+    path = tmp_path / "data.nc"
+    write_dataset(path, dataset(2000))
+    content = path.read_bytes()
+    path.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(JobError, match=r"data\.nc: cannot be read"):
+        read_dataset(path)
+
+
+@pytest.mark.parametrize("content", [None, b"", b"text", b"\x89HDF\r\n\x1a\n" + bytes(200)])
+def test_a_missing_or_foreign_file_is_an_error(tmp_path: Path, content: bytes | None):
+    path = tmp_path / "data.nc"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(JobError, match=r"data\.nc"):
+        read_dataset(path)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_only_finite_numbers_are_finite(bad: float):
+    data = dataset()
+    assert is_finite(data)
+    data["x"][7, 1] = bad
+    assert not is_finite(data)

@@ -1,0 +1,123 @@
+"""The tree against the sum over all pairs."""
+
+import numpy as np
+import pytest
+
+from engine.direct_sum import DirectSum
+from engine.gravity import SelfGravity
+from engine.orbit import G
+from engine.particles import Particles
+from engine.sphere import sphere_points
+from engine.tree import Tree
+from tests.engine.device import Array
+
+pytestmark = pytest.mark.usefixtures("taichi")
+
+RADIUS = 0.02
+"""Of the ball that stands for a particle, for points in a volume of size one."""
+
+
+def with_particles(x: Array, mass: Array | None = None) -> Particles:
+    particles = Particles(len(x))
+    particles.write({"x": x, "mass": np.ones(len(x)) / G if mass is None else mass, "v": np.zeros_like(x)})
+    return particles
+
+
+def error(gravity: SelfGravity, exact: Array) -> Array:
+    """Relative error of every acceleration."""
+    size = np.sqrt((exact**2).sum(axis=1))
+    return np.asarray(np.sqrt(((gravity.pull(0.0) - exact) ** 2).sum(axis=1)) / size.mean())
+
+
+def uniform(count: int) -> Array:
+    return sphere_points(count, 1.0, np.random.default_rng(3))
+
+
+def clustered(count: int) -> Array:
+    """Clumps of size one, as far apart as fragments late in a collision are."""
+    generator = np.random.default_rng(4)
+    centres = generator.normal(scale=1e3, size=(5, 3))
+    return centres[generator.integers(5, size=count)] + 0.3 * generator.normal(size=(count, 3))
+
+
+@pytest.mark.parametrize("points", [uniform, clustered])
+def test_a_vanishing_opening_gives_the_sum_over_all_pairs(points) -> None:
+    particles = with_particles(points(1500))
+    exact = DirectSum(particles, RADIUS).pull(0.0)
+    assert error(Tree(particles, RADIUS, 1e-9), exact).max() < 1e-12
+    assert error(Tree(particles, RADIUS, 0.5), exact).max() > 1e-5
+
+
+@pytest.mark.parametrize("points", [uniform, clustered])
+def test_the_default_opening_is_right_to_half_a_percent(points) -> None:
+    particles = with_particles(points(4000))
+    exact = DirectSum(particles, RADIUS).pull(0.0)
+    assert np.percentile(error(Tree(particles, RADIUS, 0.5), exact), 99) < 5e-3
+
+
+def test_the_error_falls_with_the_cube_of_the_opening_or_faster() -> None:
+    """A quadrupole leaves the octupole: third order in size over distance."""
+    particles = with_particles(uniform(4000))
+    exact = DirectSum(particles, RADIUS).pull(0.0)
+    openings = np.array([0.2, 0.3, 0.4, 0.6])
+    errors = [float(np.median(error(Tree(particles, RADIUS, opening), exact))) for opening in openings]
+    order = np.polyfit(np.log(openings), np.log(errors), 1)[0]
+    assert 2.7 < order < 4.5
+
+
+def test_the_quadrupole_earns_its_place() -> None:
+    particles = with_particles(uniform(4000))
+    exact = DirectSum(particles, RADIUS).pull(0.0)
+    tree = Tree(particles, RADIUS, 0.5)
+    full = float(np.median(error(tree, exact)))
+    tree.gather_leaves(1 << tree.depth, tree.size)
+    for level in reversed(range(tree.depth)):
+        tree.merge_level(1 << level)
+    tree.quadrupole.fill(0.0)
+    tree.walk_all(1 << tree.depth, tree.size)
+    places = tree.arrange(particles.read("x")["x"])
+    pull = np.empty((4000, 3))
+    for axis, field in enumerate((tree.ax, tree.ay, tree.az)):
+        pull[places[places >= 0], axis] = field.to_numpy()[: len(places)][places >= 0]
+    size = np.sqrt((exact**2).sum(axis=1)).mean()
+    monopole = float(np.median(np.sqrt(((pull - exact) ** 2).sum(axis=1)) / size))
+    assert full < 0.3 * monopole
+
+
+def test_the_energy_agrees_with_the_sum_over_all_pairs() -> None:
+    particles = with_particles(clustered(3000))
+    assert Tree(particles, RADIUS, 0.5).energy() == pytest.approx(DirectSum(particles, RADIUS).energy(), rel=2e-4)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 15, 16, 17, 100])
+def test_any_number_of_particles_will_do(count: int) -> None:
+    particles = with_particles(np.random.default_rng(count).normal(size=(count, 3)))
+    exact = DirectSum(particles, RADIUS).pull(0.0)
+    np.testing.assert_allclose(Tree(particles, RADIUS, 1e-9).pull(0.0), exact, rtol=1e-11, atol=1e-12)
+
+
+def test_particles_in_one_place_or_in_a_line_will_do() -> None:
+    line = np.outer(np.linspace(-1.0, 1.0, 300) ** 3, [1.0, 0.0, 0.0])
+    for x in (np.ones((100, 3)), np.concatenate([np.zeros((50, 3)), np.ones((50, 3))]), line):
+        particles = with_particles(x)
+        exact = DirectSum(particles, RADIUS).pull(0.0)
+        np.testing.assert_allclose(Tree(particles, RADIUS, 1e-9).pull(0.0), exact, rtol=1e-11, atol=1e-10)
+        difference = np.abs(Tree(particles, RADIUS, 0.5).pull(0.0) - exact)
+        assert np.median(difference) <= 5e-3 * np.abs(exact).mean()
+
+
+def test_unequal_masses_keep_their_weight() -> None:
+    x = uniform(2000)
+    particles = with_particles(x, np.random.default_rng(5).uniform(0.1, 100.0, 2000) / G)
+    exact = DirectSum(particles, RADIUS).pull(0.0)
+    assert np.percentile(error(Tree(particles, RADIUS, 0.5), exact), 99) < 5e-3
+
+
+def test_gravity_adds_no_momentum_and_no_angular_momentum() -> None:
+    particles = with_particles(clustered(1000))
+    Tree(particles, RADIUS, 0.8).accelerate(0.0)
+    state = particles.read("x", "acceleration", "mass")
+    force = state["mass"][:, None] * state["acceleration"]
+    assert np.abs(force.sum(axis=0)).max() < 1e-13 * np.abs(force).sum()
+    torque = np.cross(state["x"], force)
+    assert np.abs(torque.sum(axis=0)).max() < 1e-13 * np.abs(torque).sum()
