@@ -17,7 +17,7 @@ RESOURCES = $(if $(WORKERS),--workers $(WORKERS)) $(if $(THREADS),--threads-per-
 THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; exit $$code
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign resume plan status plots test test-slow lint clean
+.PHONY: help install campaign resume plan status plots test test-slow bench lint clean
 
 help: ## explain all targets
 	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
@@ -51,6 +51,9 @@ test: $(INSTALLED) ## run the fast tests
 
 test-slow: $(INSTALLED) ## run the tests that take minutes
 	$(RUN) pytest -m slow
+
+bench: $(INSTALLED) ## time the engine and compare it with the usual way and the machine's limits
+	@$(RUN) tests.benchmarks --out '$(RUNS)/bench.json'
 
 lint: $(INSTALLED) ## check style and types
 	$(RUN) ruff check .

@@ -21,6 +21,9 @@ application = typer.Typer(
 DONE, FAILED, BAD_INPUT, BUSY, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes."""
 
+TABLE_WIDTH = 130
+"""Characters that a table of results needs, also where its output is not a terminal."""
+
 
 class Arch(StrEnum):
     """Devices the engine runs on."""
@@ -80,7 +83,8 @@ def verify(
             spinner.update(f"{len(results)} of {len(chosen)} done, {result.name} last")
         if figures:
             draw(chosen, figures)
-    Console().print(table(results))
+    console = Console()
+    console.print(table(results), width=max(console.width, TABLE_WIDTH), crop=False)
     raise typer.Exit(DONE if all(result.passed for result in results) else FAILED)
 
 

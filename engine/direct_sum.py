@@ -35,31 +35,6 @@ class DirectSum(SelfGravity):
             if t % self.task == 0:
                 first = t // self.task * self.group
                 last = ti.min(first + self.group, count)
-                clear(self, first, last)
+                self.clear(first, last)
                 for q in range(count):
-                    add_ball(self, q, first, last)
-
-
-@ti.func
-def clear(self: ti.template(), first, last):
-    """Forget the sums of a range of targets, less the share of each particle's own ball that will be added."""
-    for p in range(first, last):
-        self.ax[p], self.ay[p], self.az[p] = 0.0, 0.0, 0.0
-        self.potential[p] = 1.5 * self.mu[p] / self.radius[None]
-
-
-@ti.func
-def add_ball(self: ti.template(), q, first, last):
-    """Add the pull of particle q to a range of targets."""
-    x, y, z, mu = self.x[q], self.y[q], self.z[q], self.mu[q]
-    ball = self.radius[None] ** 2
-    for p in range(first, last):
-        dx, dy, dz = x - self.x[p], y - self.y[p], z - self.z[p]
-        square = dx * dx + dy * dy + dz * dz
-        inverse = 1.0 / ti.sqrt(ti.max(square, ball))
-        strength = mu * inverse * inverse * inverse
-        self.ax[p] = self.ax[p] + strength * dx
-        self.ay[p] = self.ay[p] + strength * dy
-        self.az[p] = self.az[p] + strength * dz
-        # inside the ball 1/r becomes (3 - r^2/R^2) / 2R; outside the bracket is one
-        self.potential[p] = self.potential[p] - mu * inverse * (1.5 - 0.5 * ti.min(square * inverse * inverse, 1.0))
+                    self.add_ball(q, first, last)

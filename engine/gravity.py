@@ -14,6 +14,7 @@ Vectors = NDArray[np.float64]
 Places = NDArray[np.int64]
 
 
+@ti.data_oriented
 class SelfGravity(ABC):
     """Pull of every particle, taken as a homogeneous ball of one radius, on every other.
 
@@ -76,6 +77,29 @@ class SelfGravity(ABC):
         for column, field in enumerate(wanted):
             result[particle[taken], column] = field.to_numpy()[: len(particle)][taken]
         return result
+
+    @ti.func
+    def clear(self, first, last):
+        """Forget the sums of a range of targets, less the share of each particle's own ball that will be added."""
+        for p in range(first, last):
+            self.ax[p], self.ay[p], self.az[p] = 0.0, 0.0, 0.0
+            self.potential[p] = 1.5 * self.mu[p] / self.radius[None]
+
+    @ti.func
+    def add_ball(self, q, first, last):
+        """Add the pull of particle q to a range of targets."""
+        x, y, z, mu = self.x[q], self.y[q], self.z[q], self.mu[q]
+        ball = self.radius[None] ** 2
+        for p in range(first, last):
+            dx, dy, dz = x - self.x[p], y - self.y[p], z - self.z[p]
+            square = dx * dx + dy * dy + dz * dz
+            inverse = 1.0 / ti.sqrt(ti.max(square, ball))
+            strength = mu * inverse * inverse * inverse
+            self.ax[p] = self.ax[p] + strength * dx
+            self.ay[p] = self.ay[p] + strength * dy
+            self.az[p] = self.az[p] + strength * dz
+            # inside the ball 1/r becomes (3 - r^2/R^2) / 2R; outside the bracket is one
+            self.potential[p] = self.potential[p] - mu * inverse * (1.5 - 0.5 * ti.min(square * inverse * inverse, 1.0))
 
 
 def without_net_effect(pull: Vectors, x: Vectors, mass: Vectors) -> Vectors:

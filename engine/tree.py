@@ -13,7 +13,6 @@ import numpy as np
 import taichi as ti
 
 from engine.backend import TASK, Real, mat3, on_gpu, vec3, vec4, vec6
-from engine.direct_sum import add_ball, clear
 from engine.gravity import Places, SelfGravity, Vectors
 from engine.tensors import identity, pack, unpack
 
@@ -113,7 +112,7 @@ class Tree(SelfGravity):
     @ti.func
     def walk(self, first, last, lower, upper, leaves, size):
         """Add the pull of the whole tree to targets inside one box."""
-        clear(self, first, last)
+        self.clear(first, last)
         node = 1
         while node > 0:
             if self.is_far(node, lower, upper):
@@ -121,7 +120,7 @@ class Tree(SelfGravity):
                 node = following(node)
             elif node >= leaves:
                 for q in range((node - leaves) * size, (node - leaves + 1) * size):
-                    add_ball(self, q, first, last)
+                    self.add_ball(q, first, last)
                 node = following(node)
             else:
                 node = 2 * node

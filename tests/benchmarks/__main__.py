@@ -51,7 +51,6 @@ def measure() -> Results:
     baseline = _tell("ratio", particles=REFERENCE, threads=max(THREADS), contact=SIZES[REFERENCE][0], rounds=ROUNDS)
     typer.echo("startup", err=True)
     return {
-        "precision": "f64",
         "sizes": sizes,
         "slopes": [{"threads": threads, **_slopes(sizes, threads)} for threads in THREADS],
         "baseline": baseline,

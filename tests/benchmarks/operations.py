@@ -5,8 +5,8 @@ OPERATIONS = {
     "particles_to_grid": 27 * 34 + 80,
     # three quotients and up to eight copies of four numbers on 0.75 nodes per particle
     "update_grid": 20,
-    # 27 nodes: weight 2, weighted node 4, sum 4, outer product with the offset 21
-    "grid_to_particles": 27 * 31 + 60,
+    # 27 nodes: weight 2, weighted node 4, sum 4, outer product with the offset 21, mass shared with others 4
+    "grid_to_particles": 27 * 35 + 60,
     # (I + dt L)^-1, products and symmetric parts
     "affine_velocity": 130,
     # det(I + A) - 1 and four products of 3x3 matrices

@@ -26,9 +26,9 @@ Results = dict[str, Any]
 def print_report(results: Results) -> None:
     """Print the table of sizes, and below it the figures that belong to one size or none."""
     console = Console(width=150)
-    host = results["host"]
+    host, precision = results["host"], results["sizes"][0]["precision"]
     console.print(
-        f"{results['date']}, {host['cores']} cores, {host['cpu']}, Taichi {host['taichi']}, {results['precision']}, "
+        f"{results['date']}, {host['cores']} cores, {host['cpu']}, Taichi {host['taichi']}, {precision}, "
         f"commit {results['commit']}; ms per step: medians, least, CPU time of all threads"
     )
     table = Table(*TITLES)
@@ -70,7 +70,7 @@ def _lines(results: Results) -> list[str]:
     startup = results["startup"]
     return [
         *(
-            f"cost ~ N^{row['least_ms']:.3f} (least), N^{row['cpu_ms']:.3f} (CPU) on {row['threads']} threads"
+            f"cost ~ N^{row['least_ms']:.3f} (least), N^{row['cpu_ms']:.3f} (CPU) with {_threads(row)}"
             for row in results["slopes"]
         ),
         f"usual way / engine: {baseline['ratio']:.2f} (CPU {baseline['ratio_of_cpu']:.2f}); "
@@ -82,9 +82,13 @@ def _lines(results: Results) -> list[str]:
     ]
 
 
+def _threads(row: Results) -> str:
+    return f"{row['threads']} thread{'s' if row['threads'] > 1 else ''}"
+
+
 def _limit(limit: Results, used: Results) -> str:
     return (
-        f"{limit['threads']} threads: {1e-9 * limit['bytes_per_second']:.1f} GB/s copied, "
+        f"{_threads(limit)}: {1e-9 * limit['bytes_per_second']:.1f} GB/s copied, "
         f"{1e-9 * limit['operations_per_second']:.0f} Gflop/s; a step uses {100 * used['bandwidth']:.1f} % of the one "
         f"({used['bytes_per_particle_step']:.0f} B per particle) and {100 * used['arithmetic']:.1f} % of the other "
         f"({used['operations_per_particle_step']} operations)"

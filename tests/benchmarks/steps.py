@@ -3,6 +3,7 @@
 from typing import Any
 
 from engine import backend
+from engine.backend import Real
 from engine.scene import Gravity
 from engine.simulation import Simulation
 from tests.benchmarks.child import answer
@@ -22,6 +23,7 @@ def measure(particles: int, threads: int, contact: float, steps: int) -> dict[st
     return {
         "particles": simulation.particles.count,
         "threads": threads,
+        "precision": str(Real),
         "time": simulation.time,
         "dt": float(simulation.clock.dt[None]),
         "blocks": int(simulation.transfer.block_count[None]),

@@ -1,7 +1,6 @@
 """Running, killing and resuming jobs through the command line."""
 
 import json
-import os
 import shutil
 import signal
 import subprocess
@@ -78,7 +77,7 @@ def test_a_damaged_checkpoint_falls_back_to_the_one_before(tmp_path: Path, refer
 def test_snapshots_do_not_change_the_run_between_them(tmp_path: Path, reference: Path) -> None:
     directory = write_job(tmp_path / "job", output={"history_interval": 50.0, "snapshot_interval": 100.0})
     assert run_engine(directory).returncode == 0
-    assert_same(read_dataset(directory / "history.nc").drop_attrs(), read_dataset(reference / "history.nc").drop_attrs())
+    assert_same(read_dataset(directory / "history.nc"), read_dataset(reference / "history.nc"))
     assert len(list((directory / "snapshots").glob("*.nc"))) >= 4
 
 
@@ -137,7 +136,7 @@ def test_a_wrong_scene_is_refused_and_nothing_is_written(tmp_path: Path, change:
     result = run_engine(tmp_path)
     assert result.returncode == 2
     assert told in result.stderr and "scene.json" in result.stderr
-    assert os.listdir(tmp_path) == ["scene.json"]
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.json"]
 
 
 def test_a_missing_or_unreadable_scene_is_refused(tmp_path: Path) -> None:
