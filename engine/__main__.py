@@ -83,8 +83,7 @@ def verify(
             spinner.update(f"{len(results)} of {len(chosen)} done, {result.name} last")
         if figures:
             draw(chosen, figures)
-    console = Console()
-    console.print(table(results), width=max(console.width, TABLE_WIDTH), crop=False)
+    Console(width=max(Console().width, TABLE_WIDTH)).print(table(results))
     raise typer.Exit(DONE if all(result.passed for result in results) else FAILED)
 
 

@@ -161,6 +161,8 @@ def _is_alive(status: Status) -> bool:
     if status.host != socket.gethostname():
         return time.time() - status.heartbeat < HEARTBEAT_LIMIT
     try:
-        return abs(psutil.Process(status.pid).create_time() - status.process_start) < 1.0
+        process = psutil.Process(status.pid)
+        alive = process.status() != psutil.STATUS_ZOMBIE
+        return alive and abs(process.create_time() - status.process_start) < 1.0
     except psutil.Error:
         return False

@@ -1,8 +1,8 @@
 """Material constants and the two published parameter sets (engine/physics.md, sections 2-5)."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from engine.validation import Frozen, NonNegative, Positive
 
@@ -20,6 +20,12 @@ class Tillotson(Frozen):
     alpha: NonNegative = 5.0
     beta: NonNegative = 5.0
 
+    @model_validator(mode="after")
+    def _vaporises_completely_after_it_begins(self) -> Self:
+        if self.E_cv <= self.E_iv:
+            raise ValueError(f"'E_cv' {self.E_cv} J/kg must be greater than 'E_iv' {self.E_iv} J/kg")
+        return self
+
 
 class Material(Frozen):
     """One solid [SI units]; the defaults are basalt with the constants of Sugiura et al. 2018."""
@@ -34,6 +40,12 @@ class Material(Frozen):
     damaged_friction: NonNegative = 0.839
     weibull_k: Positive = 4.0e35
     weibull_m: Annotated[float, Field(ge=1.0, allow_inf_nan=False)] = 9.0
+
+    @model_validator(mode="after")
+    def _strengthens_with_pressure(self) -> Self:
+        if self.strength_limit <= self.cohesion:
+            raise ValueError(f"'strength_limit' {self.strength_limit} Pa must exceed 'cohesion' {self.cohesion} Pa")
+        return self
 
     @property
     def longitudinal_modulus(self) -> float:

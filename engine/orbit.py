@@ -46,10 +46,8 @@ def approach(position: Array, velocity: Array, total_mass: float, separation: fl
     farthest = apocentre(position, velocity, mu)
     if farthest <= NEAREST_START * float(np.linalg.norm(position)):
         return _straight_back(position, velocity)
-    bound = farthest < separation
-    event = _turning_point if bound else _distance(separation)
-    state, duration = _backward(np.concatenate([position, velocity]), mu, event)
-    return Approach(state[:3], state[3:], duration, "apocentre" if bound else "separation")
+    state, duration, arrived = _backward(np.concatenate([position, velocity]), mu, separation)
+    return Approach(state[:3], state[3:], duration, "separation" if arrived else "apocentre")
 
 
 def apocentre(position: Array, velocity: Array, mu: float) -> float:
@@ -79,13 +77,21 @@ def _distance(separation: float) -> Callable[[float, Array], float]:
     return beyond
 
 
-def _backward(contact: Array, mu: float, event: Callable[[float, Array], float]) -> tuple[Array, float]:
-    """State when `event` rises through zero before `contact`, and the time from there to contact."""
+def _backward(contact: Array, mu: float, separation: float) -> tuple[Array, float, bool]:
+    """State where the pair was at `separation` or else at its apocentre, the time from there, and whether it was."""
 
     def rate(time: float, state: Array) -> Array:
         return np.concatenate([state[3:], -mu * state[:3] / np.linalg.norm(state[:3]) ** 3])
 
-    event.terminal, event.direction = True, 1.0  # type: ignore[attr-defined]
-    scale = float(np.linalg.norm(contact[:3]) / np.linalg.norm(contact[3:]))
-    path = solve_ivp(rate, (0.0, -1e6 * scale), contact, method="DOP853", events=event, rtol=1e-12, atol=1e-9)
-    return path.y_events[0][0], -float(path.t_events[0][0])
+    events = [_distance(separation), _turning_point]
+    for event in events:
+        event.terminal, event.direction = True, 1.0  # type: ignore[attr-defined]
+    distance = float(np.linalg.norm(contact[:3]))
+    longest = -1e6 * distance / float(np.linalg.norm(contact[3:]))
+    bound = np.isfinite(apocentre(contact[:3], contact[3:], mu))
+    step = 0.01 * (distance**3 / mu) ** 0.5 if bound else np.inf  # so that none passes the separation twice unseen
+    path = solve_ivp(
+        rate, (0.0, longest), contact, method="DOP853", events=events, rtol=1e-12, atol=1e-9, max_step=step
+    )
+    states, times = np.concatenate([e for e in path.y_events if len(e)]), np.concatenate(path.t_events)
+    return states[0], -float(times[0]), len(path.t_events[0]) > 0

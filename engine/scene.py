@@ -16,10 +16,10 @@ Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
 
 def _shape(body: Any) -> str:
     """Which shape of body plain keys describe."""
-    return "box" if isinstance(body, Box) or (isinstance(body, dict) and "lattice" in body) else "sphere"
+    return "<box>" if isinstance(body, Box) or (isinstance(body, dict) and "lattice" in body) else "<sphere>"
 
 
-AnyBody = Annotated[Annotated[Body, Tag("sphere")] | Annotated[Box, Tag("box")], Discriminator(_shape)]
+AnyBody = Annotated[Annotated[Body, Tag("<sphere>")] | Annotated[Box, Tag("<box>")], Discriminator(_shape)]
 
 
 class Gravity(Frozen):

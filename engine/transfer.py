@@ -146,7 +146,7 @@ class Transfer:
                 self.clock.report_rate(self.gather(self.order[k], self.owner[k]))
         for k in range(self.alone_count[None] * self.clock.running[None]):
             p = self.order[self.shared_count[None] + k]
-            self.drift(p)
+            self.clock.report_rate(self.drift(p))
             self.check_place(p)
 
     @ti.func
@@ -216,7 +216,7 @@ class Transfer:
                     sum_L += vec3(weighted[0], weighted[1], weighted[2]).outer_product(vec3(i, j, k) - f)
         rate = ti.cast(0.0, Real)
         if shared <= ALONE * mass:
-            self.drift(p)
+            rate = self.drift(p)
         else:
             rate = self.move(p, vec3(sum_v[0], sum_v[1], sum_v[2]), 4.0 / dx * sum_L)
         self.check_place(p)
@@ -238,11 +238,15 @@ class Transfer:
 
     @ti.func
     def drift(self, p):
-        """A particle that shares no node with another is ballistic: its strain rests, its spin stays."""
+        """A particle that shares no node with another is ballistic: its strain rests, its spin stays.
+
+        Returns the inverse time step [1/s] that keeps it from passing another unseen.
+        """
         dt = self.clock.dt[None]
         self.particles.v[p] += dt * self.particles.acceleration[p]
         self.particles.x[p] += dt * self.particles.v[p]
         self.particles.C[p] = 0.5 * (self.particles.C[p] - self.particles.C[p].transpose())
+        return self.particles.v[p].norm() / (self.cfl[None] * self.dx[None])
 
     @ti.func
     def check_place(self, p):

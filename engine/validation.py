@@ -7,13 +7,14 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from engine.errors import SceneError
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-NonNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+# -0.0 + 0.0 is 0.0: one text for one meaning
+Finite = Annotated[float, Field(allow_inf_nan=False), AfterValidator(lambda value: value + 0.0)]
+Positive = Annotated[Finite, Field(gt=0.0)]
+NonNegative = Annotated[Finite, Field(ge=0.0)]
 Vector = tuple[Finite, Finite, Finite]
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -69,7 +70,8 @@ def validate(model: type[Model], table: dict[str, Any], source: str) -> Model:
 
 
 def _explain(model: type[BaseModel], issue: Any) -> str:
-    location = [str(part) for part in issue["loc"]]
+    # a tag in angle brackets tells which model was tried; it is no part of the input
+    location = [str(part) for part in issue["loc"] if not str(part).startswith("<")]
     key = ".".join(location) or "input"
     if issue["type"] == "extra_forbidden":
         return f"unknown key '{key}'{suggestion(location[-1], _known_keys(model, issue['loc'][:-1]))}"

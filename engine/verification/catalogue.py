@@ -34,7 +34,7 @@ FULL: dict[str, Problem] = {
     **SHORT,
     "hydrostatic": Hydrostatic(particles=20000, end_time=3000.0),
     "column": Column(cells=(8, 16, 32, 64, 128)),
-    "hugoniot": Hugoniot(speeds=(25.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)),
+    "hugoniot": Hugoniot(speeds=(25.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0), cells=320),
     "collapse": Collapse(particles=(2000, 16000)),
     "cliff": Cliff(cells=15),
     "rubble": Rubble(particles=1500),

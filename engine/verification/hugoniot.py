@@ -116,14 +116,16 @@ class Hugoniot:
 
     Attributes:
         speeds: particle velocities [m/s].
+        cells: thickness of one slab in cells; a front forms over some c0/up of them.
     """
 
     name = "hugoniot"
     speeds: tuple[float, ...] = (100.0, 500.0, 2000.0)
+    cells: int = 80
 
     def checks(self) -> list[Check]:
         """Us - c0 within 10 % for weak shocks; Us, P and rho/rho0 - 1 within 2 % and E within 5 % for strong ones."""
-        return [check for up in self.speeds for check in _compare(Shock(up), Impact(up).measure())]
+        return [check for up in self.speeds for check in _compare(Shock(up), Impact(up, self.cells).measure())]
 
 
 def _compare(exact: Shock, found: dict[str, float]) -> list[Check]:

@@ -1,15 +1,7 @@
-"""The state that is timed: two bodies deep in contact, with all physics of a collision but gravity."""
+"""The state that is timed: two bodies deep in contact, and steps from there on."""
 
-from engine.collision import Collision
-from engine.scene import Gravity, Scene
+from engine.scene import Scene
 from engine.simulation import Simulation
-
-
-def collision(particles: int, gravity: Gravity | None = None) -> Scene:
-    """A (200 m/s, 15 deg) collision of two bodies of `particles` each, from shortly before contact."""
-    return Collision(
-        velocity=200.0, angle=15.0, particles=particles, gravity=gravity, start_separation=1.05, end_time=1e5
-    ).scene()
 
 
 def in_contact(scene: Scene, time: float) -> Simulation:

@@ -11,7 +11,7 @@ from tests.benchmarks.stopwatch import Stopwatch
 
 LENGTH = 1 << 24
 """Numbers in each copied array: 128 MiB, more than any cache."""
-ROWS, COLUMNS, REPEATS = 16, 8, 100_000
+ROWS, COLUMNS, REPEATS = 16, 8, 2_000_000
 """Numbers that one thread multiplies and adds to in turn, in rows and columns, and how often."""
 LAPS = 10
 

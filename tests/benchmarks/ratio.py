@@ -15,8 +15,9 @@ from tests.benchmarks.baseline import (
     step_together,
 )
 from tests.benchmarks.child import answer
-from tests.benchmarks.contact import collision, in_contact, take_step
+from tests.benchmarks.contact import in_contact, take_step
 from tests.benchmarks.dense import DenseTransfer
+from tests.benchmarks.scene import collision
 from tests.benchmarks.stopwatch import Stopwatch
 
 AGREEMENT_STEPS = 20

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 from tests.benchmarks.child import ROOT
-from tests.benchmarks.contact import collision
+from tests.benchmarks.scene import collision
 
 WARM_RUNS = 3
 

@@ -7,8 +7,9 @@ from engine.backend import Real
 from engine.scene import Gravity
 from engine.simulation import Simulation
 from tests.benchmarks.child import answer
-from tests.benchmarks.contact import collision, in_contact, make_ready
+from tests.benchmarks.contact import in_contact, make_ready
 from tests.benchmarks.memory import allocated, bytes_per_step
+from tests.benchmarks.scene import collision
 from tests.benchmarks.stopwatch import Stopwatch, total
 
 PHASES = ("particles_to_grid", "update_grid", "grid_to_particles")

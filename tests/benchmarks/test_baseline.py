@@ -12,8 +12,9 @@ from tests.benchmarks.baseline import (
     differences,
     step_together,
 )
-from tests.benchmarks.contact import collision, in_contact
+from tests.benchmarks.contact import in_contact
 from tests.benchmarks.dense import DenseTransfer
+from tests.benchmarks.scene import collision
 
 STEPS = 20
 CONTACT = 0.0

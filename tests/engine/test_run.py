@@ -82,11 +82,10 @@ def test_snapshots_do_not_change_the_run_between_them(tmp_path: Path, reference:
 
 
 def test_a_finished_job_is_left_alone(reference: Path) -> None:
-    before = {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in reference.iterdir()}
+    files = [reference / name for name in ("final.nc", "history.nc", "status.json", "provenance.json")]
+    before = [(path.stat().st_mtime_ns, path.read_bytes()) for path in files]
     assert run_engine(reference).returncode == 0
-    after = {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in reference.iterdir()}
-    for name in ("final.nc", "history.nc", "status.json", "provenance.json"):
-        assert before[name] == after[name]
+    assert [(path.stat().st_mtime_ns, path.read_bytes()) for path in files] == before
 
 
 def test_a_job_that_another_process_runs_is_refused(tmp_path: Path) -> None:
