@@ -1,7 +1,6 @@
 """Free rotation of an elastic sphere (engine/physics.md, section 1)."""
 
 from dataclasses import dataclass
-from math import inf
 
 import numpy as np
 
@@ -16,8 +15,9 @@ from engine.verification.drive import begin, fitted_order, follow
 class Rotation:
     """A sphere turns once about a skew axis: angular momentum and energy are constant.
 
-    Motion and strain keep their energy. The work of stress does not: it takes the strain of a step to be dt sym(L), and
-    a rotation has dt^2 L L^T / 2 besides, so internal energy falls by about rate x dt of the kinetic energy per radian.
+    Known disagreement: motion and strain keep their energy, but the work of stress does not. It takes the strain of a
+    step to be dt sym(L), and a rotation has dt^2 L L^T / 2 besides, so internal energy falls by about rate x dt of the
+    kinetic energy per radian.
 
     Attributes:
         particles: number of particles.
@@ -55,7 +55,7 @@ class Rotation:
         return [
             Check("angular momentum", "kg m2/s", before + change, before, change / before, 1e-12),
             share("kinetic and elastic energy", "J", _motion(end), _motion(start), 1e-3),
-            Check("total energy", "J", end.total_energy, start.total_energy, losses[0], inf),
+            Check("total energy", "J", end.total_energy, start.total_energy, losses[0], 1e-3),
             Check("order in dt of the total energy", "-", order, 1.0, max(0.0, 1.0 - order), 0.1),
         ]
 

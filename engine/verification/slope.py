@@ -7,7 +7,7 @@ import numpy as np
 from engine.body import Box
 from engine.initial import initial_state
 from engine.scene import Numerics, Physics, Scene, Wall
-from engine.verification.check import Check, share
+from engine.verification.check import Check, difference, share
 from engine.verification.drive import Array, begin, follow
 from engine.verification.rock import elastic
 
@@ -103,6 +103,9 @@ class Layer:
 class Slope:
     """Above the friction angle a slope slides as a block on a plane would; below it rests.
 
+    Known disagreement: the grid spreads the shear of the base upward, and above that zone the layer bears some 2 % less
+    shear stress than it could. At 35 deg the acceleration, a small difference of large pulls, is then 6 % too high.
+
     Attributes:
         friction_angle: of the rubble [deg].
         steep, gentle: inclinations [deg].
@@ -114,10 +117,10 @@ class Slope:
     gentle: float = 25.0
 
     def checks(self) -> list[Check]:
-        """Acceleration above and below the friction angle; errors are shares of the pull along the slope."""
+        """Acceleration above the friction angle within 2 %, and rest below it."""
         friction = float(np.tan(np.deg2rad(self.friction_angle)))
-        layers = [Layer(float(np.deg2rad(angle)), friction) for angle in (self.steep, self.gentle)]
+        steep, gentle = (Layer(float(np.deg2rad(angle)), friction) for angle in (self.steep, self.gentle))
         return [
-            share(f"acceleration at {np.rad2deg(a.angle):.0f} deg", "m/s2", a.measure(), a.acceleration, 0.02, a.pull)
-            for a in layers
+            share(f"acceleration at {self.steep:.0f} deg", "m/s2", steep.measure(), steep.acceleration, 0.02),
+            difference(f"acceleration at {self.gentle:.0f} deg", "m/s2", gentle.measure(), 0.0, 1e-3 * GRAVITY),
         ]

@@ -13,6 +13,7 @@ TITLES = (
     "step",
     "least",
     "CPU",
+    "cores",
     "10^6 p-steps/s",
     "rel. cost",
     "rebuild",
@@ -29,7 +30,7 @@ def print_report(results: Results) -> None:
     host, precision = results["host"], results["sizes"][0]["precision"]
     console.print(
         f"{results['date']}, {host['cores']} cores, {host['cpu']}, Taichi {host['taichi']}, {precision}, "
-        f"commit {results['commit']}; ms per step: medians, least, CPU time of all threads"
+        f"commit {results['commit']}; ms per step: medians, least, CPU time of all threads, cores it got"
     )
     table = Table(*TITLES)
     for row in results["sizes"]:
@@ -48,6 +49,7 @@ def _cells(row: Results, reference: Results) -> list[str]:
         f"{step['median_ms']:.2f}",
         f"{step['least_ms']:.2f}",
         f"{step['cpu_ms']:.2f}",
+        f"{step['cpu_ms'] / step['median_ms']:.1f}",
         f"{1e-3 * row['particles'] / step['least_ms']:.2f}",
         f"{_per_particle(row) / _per_particle(reference):.2f}",
         f"{rebuild['median_ms']:.1f}" if rebuild["count"] else "-",
