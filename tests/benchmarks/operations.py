@@ -13,7 +13,7 @@ OPERATIONS = {
     "deform": 220,
     # an inverse, two products, 14 terms of the series
     "half_log": 330,
-    # a product and 12 terms; most particles in contact yield
+    # a product and 12 terms, as if every particle yielded
     "exp_minus_identity": 200,
     "tillotson": 45,
     "strength, stress, energy": 150,

@@ -8,6 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from engine.scene import Gravity
 from tests.benchmarks.child import ROOT
 from tests.benchmarks.scene import collision
 
@@ -24,7 +25,7 @@ def measure() -> dict[str, dict[str, float]]:
 def _run(directory: Path, number: int) -> dict[str, float]:
     job = directory / str(number)
     job.mkdir()
-    scene = collision(100)
+    scene = collision(100, Gravity())
     (job / "scene.json").write_text(scene.model_copy(update={"end_time": scene.start_time + 1.0}).canonical())
     command = [sys.executable, "-m", "engine", "run", str(job), "--threads", "1"]
     wall, cpu = time.perf_counter(), _children()
