@@ -162,7 +162,7 @@ def _is_alive(status: Status) -> bool:
         return time.time() - status.heartbeat < HEARTBEAT_LIMIT
     try:
         process = psutil.Process(status.pid)
-        alive = process.status() != psutil.STATUS_ZOMBIE
-        return alive and abs(process.create_time() - status.process_start) < 1.0
+        same_process: bool = abs(process.create_time() - status.process_start) < 1.0
+        return same_process and process.status() != psutil.STATUS_ZOMBIE
     except psutil.Error:
         return False
