@@ -37,6 +37,15 @@ def deform(B, j, A):
     return pack((1.0 + excess) * (C + increment) + excess * identity()), j + (1.0 + j) * growth
 
 
+@ti.func
+def strain_increment(A):
+    """Logarithmic strain sym(ln(I + A)) of the displacement gradient A, to second order.
+
+    A step of rigid rotation stretches a little, -A^2 / 2: without it a spinning body would lose energy.
+    """
+    return symmetric(A - 0.5 * (A @ A))
+
+
 @ti.data_oriented
 class Constitution:
     """Stress, energy and damage of one particle.
@@ -80,9 +89,8 @@ class Constitution:
         body = self.particles.body[p]
         m = self.table[body]
         B, j = deform(self.particles.B[p], self.particles.j[p], dt * L)
-        d = symmetric(L)
-        before = unpack(self.particles.tau[p])
-        half_work = 0.5 * dt / m.rho0 * ddot(before, d)
+        strain, d = strain_increment(dt * L), symmetric(L)
+        half_work = 0.5 / m.rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E = self.particles.E[p] + 2.0 * half_work
         D = self.damage(p)
         P, c2 = self.pressure.pressure(-j / (1.0 + j), E, body)
@@ -95,7 +103,7 @@ class Constitution:
         self.particles.B[p], self.particles.j[p] = B, j
         self.particles.tau[p] = pack(tau)
         # trapezoidal rule: the work of the mean stress, so that elastic energy does not drift
-        self.particles.E[p] += half_work + 0.5 * dt / m.rho0 * ddot(tau, d)
+        self.particles.E[p] += half_work + 0.5 / m.rho0 * ddot(tau, strain)
         self.particles.root[p] = self.fracture.grow(self.particles.root[p], s / J, P, dt, p, body)
         return self.wave_speed(c2, body), diffusivity
 
