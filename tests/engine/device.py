@@ -1,5 +1,6 @@
 """Device functions run over arrays, so that a law can be tested alone; random tensors to run them on."""
 
+import os
 from collections.abc import Callable
 from typing import Any
 
@@ -70,9 +71,20 @@ def norm(tensors: Array) -> Array:
     return np.asarray(np.sqrt(np.einsum("nij,nij->n", tensors, tensors)))
 
 
+COMPARED: dict[str, tuple[int, float]] = {}
+"""Inputs tried and largest error by test, filled by `worst` and printed by tests/engine/laws.py."""
+
+
 def worst(found: Array, expected: Array, scale: Array | float) -> float:
     """Largest difference in units of `scale`, which has one entry per row or is common to all."""
     difference = np.abs(found - expected).reshape(len(found), -1).max(axis=1)
     share = np.divide(difference, scale, out=np.where(difference > 0.0, np.inf, 0.0), where=np.asarray(scale) > 0.0)
     assert not np.isnan(share).any()
+    _record(len(found), float(share.max()))
     return float(share.max())
+
+
+def _record(inputs: int, error: float) -> None:
+    test = os.environ["PYTEST_CURRENT_TEST"].split("[")[0].split(" ")[0]
+    before, largest = COMPARED.get(test, (0, 0.0))
+    COMPARED[test] = (before + inputs, max(largest, error))

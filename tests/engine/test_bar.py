@@ -43,18 +43,19 @@ def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     total = np.array([len(strains) for strains in own])
     growth = CRACK_SPEED[name] * np.sqrt(LONGITUDINAL / RHO0) / (3.0 * (4.0 / 3.0 * np.pi / count) ** (1.0 / 3.0))
     e, E, root, axial = np.zeros((count, 3)), np.zeros(count), np.zeros(count), np.zeros(count)
+    work_strain = rate * dt - 0.5 * (rate * dt) ** 2
     stress, damage = [], []
     for n in range(1, STEPS + 1):
         log_J, D = n * np.log1p(rate * dt), root**3
         e, J = e + np.log1p(rate * dt) * np.array([2.0, -1.0, -1.0]) / 3.0, np.exp(log_J)
-        ahead = E + rate * dt * axial / RHO0
+        ahead = E + work_strain * axial / RHO0
         P = tillotson(np.full(count, np.expm1(-log_J)), ahead)
         P = np.where(P < 0.0, (1.0 - D) * P, P)
         sqrt_J2 = 2.0 * G / J * np.sqrt(0.5 * (e**2).sum(axis=1))
         e = e * np.minimum(strength_limit(P, ahead, D, FRICTION[name]) / sqrt_J2, 1.0)[:, None]
         s = 2.0 * G / J * e
         before, axial = axial, J * (s[:, 0] - P)
-        E = E + 0.5 * rate * dt * (before + axial) / RHO0
+        E = E + 0.5 * work_strain * (before + axial) / RHO0
         strain = (s.max(axis=1) - P) / MODULUS[name]
         active = np.array([(strains < local).sum() for strains, local in zip(own, strain, strict=True)])
         cracks = active if name == "sugiura2018" else np.minimum(active, 1)

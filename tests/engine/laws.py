@@ -1,0 +1,42 @@
+"""`python -m tests.engine.laws`: every law with the largest error its tests find, and how many inputs they try."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.engine.device import COMPARED
+
+LAWS = {
+    "tensors": "logarithms, eigenvalues",
+    "deform": "deformation",
+    "tillotson": "Tillotson pressure",
+    "strength": "strength",
+    "fracture": "damage",
+    "viscosity": "viscosity",
+    "constitution": "all laws of a particle",
+    "bar": "bar of breaking particles",
+    "gravity": "sum over pairs",
+    "transfer": "whole step",
+}
+"""Test modules of the laws, in the order of engine/physics.md."""
+
+
+def row(test: str, inputs: int, error: float) -> str:
+    """One line of the table, from a test's path and name."""
+    path, name = test.split("::")
+    law = LAWS[Path(path).stem.removeprefix("test_")]
+    return f"| {law} | {name.removeprefix('test_').replace('_', ' ')} | {inputs:,} | {error:.1e} |"
+
+
+def main() -> int:
+    """Run the laws' tests and print the table; the exit code is that of the tests."""
+    code = pytest.main([f"tests/engine/test_{law}.py" for law in LAWS])
+    print("\n| law | what holds | inputs | largest error |\n|---|---|---|---|")
+    for test, (inputs, error) in COMPARED.items():
+        print(row(test, inputs, error))
+    return int(code)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
