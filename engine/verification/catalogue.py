@@ -32,7 +32,7 @@ SHORT: dict[str, Problem] = {
 
 FULL: dict[str, Problem] = {
     **SHORT,
-    "hydrostatic": Hydrostatic(particles=20000, end_time=3000.0),
+    "hydrostatic": Hydrostatic(particles=20000, end_time=3000.0, seeds=(1, 2, 3, 4, 5)),
     "column": Column(cells=(8, 16, 32, 64, 128)),
     "hugoniot": Hugoniot(speeds=(25.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0), cells=320),
     "collapse": Collapse(particles=(2000, 16000)),

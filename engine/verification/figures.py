@@ -9,39 +9,48 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
 
 from engine.verification.bar import CONTINUUM_PEAK, Bar, Pull
 from engine.verification.check import Problem
 from engine.verification.cliff import Cliff, experiment, jutzi
+
+SIZES = (25, 50, 100, 200, 400, 800, 1600)
+"""Particles in the bars that show how strength depends on resolution."""
 
 
 def draw(problems: Iterable[Problem], directory: Path) -> None:
     """Write one PNG for each problem that has a figure."""
     directory.mkdir(parents=True, exist_ok=True)
     for problem in problems:
-        figure, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
         if isinstance(problem, Bar):
-            _bar(axes, problem)
+            _bar(problem)
         elif isinstance(problem, Cliff):
-            _cliff(axes, problem)
-        if axes.has_data():
-            figure.savefig(directory / f"{problem.name}.png", dpi=150)
-        plt.close(figure)
+            _cliff(problem)
+        for number in plt.get_fignums():
+            plt.figure(number).savefig(directory / f"{problem.name}.png", dpi=110)
+        plt.close("all")
 
 
-def _bar(axes: Axes, problem: Bar) -> None:
-    """Peak stress over strain rate."""
+def _bar(problem: Bar) -> None:
+    """Peak stress over strain rate and over particle spacing."""
+    _, (over_rate, over_spacing) = plt.subplots(1, 2, figsize=(10.0, 4.0), layout="constrained", sharey=True)
     rates = np.array(problem.rates)
-    axes.loglog(rates, CONTINUUM_PEAK * rates**0.25, "--", color="0.5", label="continuum law, rate$^{1/4}$")
-    axes.loglog(rates, [Pull(rate).reference().max() for rate in rates], "-", label="NumPy, the same flaws")
-    axes.loglog(rates, [Pull(rate).engine().max() for rate in rates], "o", label="engine")
-    axes.set(xlabel="strain rate [1/s]", ylabel="peak stress [Pa]")
-    axes.legend()
+    over_rate.loglog(rates, CONTINUUM_PEAK * rates**0.25, "--", color="0.5", label="continuum law, rate$^{1/4}$")
+    over_rate.loglog(rates, [Pull(rate).reference().max() for rate in rates], "-", label="NumPy, the same flaws")
+    over_rate.loglog(rates, [Pull(rate).engine().max() for rate in rates], "o", label="engine")
+    over_rate.set(xlabel="strain rate [1/s]", ylabel="peak stress [Pa]")
+    over_rate.legend()
+    for rate in rates:
+        bars = [Pull(rate, particles=count) for count in SIZES]
+        spacing = [bar.body.spacing for bar in bars]
+        over_spacing.loglog(spacing, [bar.engine().max() for bar in bars], "o-", label=f"{rate:g} /s")
+    over_spacing.set(xlabel="particle spacing $h$ [m] of a bar of 4.2 m$^3$")
+    over_spacing.legend()
 
 
-def _cliff(axes: Axes, problem: Cliff) -> None:
+def _cliff(problem: Cliff) -> None:
     """Surface of the collapsed cliff."""
+    _, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
     for number, (when, moment) in enumerate(problem.run().items()):
         color, band, sph = f"C{number}", experiment(when), jutzi(when)
         axes.fill_between(*band.T, color=color, alpha=0.25, lw=0.0, label=f"{when}: experiments (Lajeunesse 2005)")

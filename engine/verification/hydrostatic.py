@@ -18,11 +18,13 @@ class Hydrostatic:
     Attributes:
         particles: number of particles.
         end_time: how long it must stay so [s].
+        seeds: of the arrangement of particles and of their flaws; the worst counts.
     """
 
     name = "hydrostatic"
     particles: int = 2000
     end_time: float = 600.0
+    seeds: tuple[int, ...] = (0,)
 
     @property
     def body(self) -> Body:
@@ -34,15 +36,19 @@ class Hydrostatic:
         body = self.body
         return np.asarray(2.0 / 3.0 * np.pi * G * body.material.rho0**2 * (body.radius**2 - r**2))
 
+    def at_rest(self, seed: int) -> tuple[float, float, float]:
+        """RMS of P - P(r) [Pa], RMS speed [m/s] and share of broken particles after `end_time`."""
+        end = follow(begin(Scene(bodies=(self.body,), end_time=self.end_time, seed=seed)), self.end_time)
+        r = np.linalg.norm(end.x - end.x.mean(axis=0), axis=1)
+        deviation = np.sqrt(np.mean((end.P - self.pressure(r)) ** 2))
+        return float(deviation), float(np.sqrt(np.mean(end.speed**2))), float(np.mean(end.damage > 0.0))
+
     def checks(self) -> list[Check]:
         """Pressure, speed and damage after `end_time`."""
-        end = follow(begin(Scene(bodies=(self.body,), end_time=self.end_time)), self.end_time)
-        r = np.linalg.norm(end.x - end.x.mean(axis=0), axis=1)
+        deviation, motion, broken = map(max, zip(*[self.at_rest(seed) for seed in self.seeds], strict=True))
         centre = float(self.pressure(np.zeros(1))[0])
-        deviation = float(np.sqrt(np.mean((end.P - self.pressure(r)) ** 2)))
-        motion = float(np.sqrt(np.mean(end.speed**2)))
         return [
             Check("RMS of P - P(r), as a share of P(0)", "Pa", deviation, 0.0, deviation / centre, 0.03),
             difference("speed, RMS", "m/s", motion, 0.0, 0.01),
-            difference("share of broken particles", "-", float(np.mean(end.damage > 0.0)), 0.0, 0.001),
+            difference("share of broken particles", "-", broken, 0.0, 0.001),
         ]

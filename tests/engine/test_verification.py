@@ -11,7 +11,7 @@ from engine.errors import SceneError
 from engine.initial import initial_state
 from engine.scene import Numerics, Physics, Scene, Wall
 from engine.validation import validate
-from engine.verification.bar import Bar
+from engine.verification.bar import Bar, Pull
 from engine.verification.catalogue import FULL, SHORT
 from engine.verification.check import Problem, difference, share
 from engine.verification.collapse import Fall
@@ -81,6 +81,12 @@ def test_exact_shocks_are_the_published_ones(up):
     assert shock.Us == pytest.approx(Us, abs=0.05)
     np.testing.assert_allclose(shock.P, 1e9 * gigapascals, rtol=4e-4)
     assert 1.0 + shock.compression == pytest.approx(ratio, abs=6e-6)
+
+
+@pytest.mark.parametrize("rate", Bar().rates)
+def test_bars_are_pulled_beyond_their_peak(rate):
+    stress = Pull(rate).reference()
+    assert stress.argmax() < 0.7 * len(stress)
 
 
 def test_the_exact_collapse_takes_1278_seconds():
