@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.body import Body
 from engine.orbit import G
-from engine.scene import Scene
+from engine.scene import Physics, Scene
 from engine.verification.check import Check, difference
 from engine.verification.drive import Array, begin, follow
 
@@ -18,11 +18,13 @@ class Hydrostatic:
     Attributes:
         particles: number of particles.
         end_time: how long it must stay so [s].
+        sound_speed: factor on the speed of sound.
     """
 
     name = "hydrostatic"
     particles: int = 2000
     end_time: float = 600.0
+    sound_speed: float = 1.0
 
     @property
     def body(self) -> Body:
@@ -36,7 +38,9 @@ class Hydrostatic:
 
     def checks(self) -> list[Check]:
         """Pressure, speed and damage after `end_time`."""
-        end = follow(begin(Scene(bodies=(self.body,), end_time=self.end_time)), self.end_time)
+        physics = Physics(sound_speed=self.sound_speed)
+        scene = Scene(bodies=(self.body,), end_time=self.end_time, physics=physics)
+        end = follow(begin(scene), self.end_time)
         r = np.linalg.norm(end.x - end.x.mean(axis=0), axis=1)
         centre = float(self.pressure(np.zeros(1))[0])
         deviation = float(np.sqrt(np.mean((end.P - self.pressure(r)) ** 2)))
