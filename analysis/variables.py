@@ -110,6 +110,7 @@ PARAMETERS = {
     "particles": Variable("particles in the target", "1"),
     "seed": Variable("seed of the particles and flaws", "1"),
     "friction": Variable("friction coefficient of damaged rock", "1"),
+    "sound_speed": Variable("factor on the speed of sound", "1", "below 1 a late-stage approximation"),
     "viscosity.shear": Variable("kinematic shear viscosity", "m2 s-1"),
     "viscosity.bulk": Variable("kinematic bulk viscosity", "m2 s-1"),
     "case": Variable("name of the case", ""),

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from engine.body import Body
 from engine.materials import PARAMETER_SETS, Fracture, Material
 from engine.orbit import Approach, approach
-from engine.scene import Gravity, Numerics, Output, Physics, Scene, Viscosity
+from engine.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Viscosity
 from engine.validation import Finite, Frozen, Positive, suggestion
 
 
@@ -24,6 +24,7 @@ class Collision(Frozen):
     parameter_set: constants and rules of friction and fracture, `sugiura2018` or `talk`.
     friction: friction coefficient of damaged rock [-], when other than the parameter set's.
     fracture: rules of fracture, when other than the parameter set's.
+    sound_speed: factor on the speed of sound, see engine.scene.Physics.
     """
 
     velocity: Positive
@@ -40,6 +41,7 @@ class Collision(Frozen):
     fracture: Fracture | None = None
     gravity: Gravity | None = Gravity()
     viscosity: Viscosity | None = None
+    sound_speed: Fraction = 1.0
     numerics: Numerics = Numerics()
     output: Output = Output()
 
@@ -94,6 +96,7 @@ class Collision(Frozen):
                 fracture=self.fracture or PARAMETER_SETS[self.parameter_set].fracture,
                 gravity=self.gravity,
                 viscosity=self.viscosity,
+                sound_speed=self.sound_speed,
             ),
             numerics=self.numerics,
             output=self.output,

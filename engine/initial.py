@@ -6,10 +6,13 @@ from numpy.typing import NDArray
 from engine.body import Body, Box, Solid
 from engine.cuboid import box_points
 from engine.flaws import Flaws, draw_flaws, join
+from engine.materials import Material
 from engine.orbit import G
 from engine.particles import Arrays
 from engine.scene import Scene
 from engine.sphere import sphere_points
+
+Vector = NDArray[np.float64]
 
 
 def generator(scene: Scene, body: int, purpose: int) -> np.random.Generator:
@@ -19,7 +22,7 @@ def generator(scene: Scene, body: int, purpose: int) -> np.random.Generator:
 
 def initial_state(scene: Scene) -> Arrays:
     """Every particle field that is not zero at the start, bodies one after the other."""
-    parts = [_body_state(scene, i, body) for i, body in enumerate(scene.bodies)]
+    parts = [_body_state(scene, i) for i in range(len(scene.bodies))]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
@@ -30,23 +33,40 @@ def all_flaws(scene: Scene) -> Flaws:
     return join([draw_flaws(body, rule, generator(scene, i, 1)) for i, body in enumerate(scene.bodies)])
 
 
-def _body_state(scene: Scene, index: int, body: Body | Box) -> Arrays:
+def _body_state(scene: Scene, index: int) -> Arrays:
+    body = scene.bodies[index]
     points, pressure = _points(scene, index, body), np.zeros(body.count)
     if isinstance(body, Body) and body.hydrostatic:
         pressure = _hydrostatic_pressure(body, points)
-    mu = pressure / body.material.tillotson.A
+    mu, energy = compressed(pressure, scene.materials[index])
     return {
         "x": points + np.array(body.position),
         "v": np.array(body.velocity) + np.cross(np.array(body.spin), points),
         "C": np.tile(_spin_tensor(body), (body.count, 1, 1)),
         "j": -mu / (1.0 + mu),
-        "E": 0.5 * body.material.tillotson.A * mu**2 / body.material.rho0,
+        "E": energy,
         "tau": np.outer(-pressure / (1.0 + mu), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
         "root": np.full(body.count, body.damage ** (1.0 / 3.0)),
         "acceleration": np.tile(scene.physics.uniform_gravity or (0.0, 0.0, 0.0), (body.count, 1)),
         "mass": np.full(body.count, body.mass / body.count),
         "body": np.full(body.count, index, dtype=np.int32),
     }
+
+
+def compressed(P: Vector, material: Material) -> tuple[Vector, Vector]:
+    """Compression rho/rho0 - 1 [-] and energy [J/kg] of cold rock under pressure.
+
+    The energy is that of elastic strain, A mu^2 / (2 rho); it presses too, so P = A mu + (B + (a + b) A/2) mu^2
+    (engine/physics.md, sections 2 and 8; without the energy's own share in w0, 1e-10 of its pressure).
+
+    Args:
+        P: pressure [Pa], shape [particle_count].
+        material: with the elastic moduli in force.
+    """
+    eos = material.tillotson
+    quadratic = eos.B + 0.5 * (eos.a + eos.b) * eos.A
+    mu = 2.0 * P / (eos.A + np.sqrt(eos.A**2 + 4.0 * quadratic * P))
+    return mu, 0.5 * eos.A * mu**2 / (material.rho0 * (1.0 + mu))
 
 
 def _points(scene: Scene, index: int, body: Body | Box) -> NDArray[np.float64]:

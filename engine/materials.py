@@ -63,6 +63,12 @@ class Material(Frozen):
         bulk, shear = self.tillotson.A, self.shear_modulus
         return 9.0 * bulk * shear / (3.0 * bulk + shear)
 
+    def slowed(self, factor: float) -> Self:
+        """The same solid with elastic moduli that let waves travel at `factor` of their speed; its strength stays."""
+        square, eos = factor**2, self.tillotson
+        softer = eos.model_copy(update={"A": square * eos.A, "B": square * eos.B})
+        return self.model_copy(update={"tillotson": softer, "shear_modulus": square * self.shear_modulus})
+
 
 class Fracture(Frozen):
     """Weibull flaws and Grady-Kipp damage growth (engine/physics.md, section 5).

@@ -8,7 +8,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from engine.blocks import EDGE
 from engine.body import Body, Box
 from engine.errors import SceneError
-from engine.materials import Fracture
+from engine.materials import Fracture, Material
 from engine.validation import Finite, Frozen, NonNegative, Positive, Vector, read_table, validate
 
 Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
@@ -73,6 +73,11 @@ class Physics(Frozen):
 
     Pressure is always Tillotson's. `shear` adds the Hencky deviatoric stress, `strength` its radial return;
     `uniform_gravity` [m/s^2] takes the place of self-gravity.
+
+    sound_speed: factor on the speed of sound, in (0, 1]; below 1 a late-stage approximation, in longer time steps, for
+        motion that stays slow against the slower sound: elastic moduli are multiplied by its square, so elastic strain
+        and energy grow by 1/sound_speed^2, and shocks are wrong. What is given as a stress (strength, friction,
+        hydrostatic pressure, the tension that opens a flaw) stays (engine/physics.md, section 12).
     """
 
     shear: bool = True
@@ -82,6 +87,7 @@ class Physics(Frozen):
     viscosity: Viscosity | None = None
     uniform_gravity: Vector | None = None
     walls: tuple[Wall, ...] = ()
+    sound_speed: Fraction = 1.0
 
     @model_validator(mode="after")
     def _parts_fit_together(self) -> Self:
@@ -152,6 +158,11 @@ class Scene(Frozen):
         """Blocks after which space repeats along each axis; 0 is unbounded."""
         x, y, z = (round(length / (EDGE * self.dx)) if length else 0 for length in self.period)
         return x, y, z
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """Material of every body, with the elastic moduli in force."""
+        return tuple(body.material.slowed(self.physics.sound_speed) for body in self.bodies)
 
     @property
     def particles(self) -> int:

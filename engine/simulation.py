@@ -16,6 +16,7 @@ from engine.fracture import Fracture, Unbreakable
 from engine.gravity import SelfGravity
 from engine.initial import all_flaws, initial_state
 from engine.ledger import Totals, elastic_energy, totals
+from engine.materials import Material
 from engine.particles import Arrays, Particles
 from engine.scene import Scene
 from engine.strength import Strength, Unlimited
@@ -38,7 +39,7 @@ class Simulation:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, physics = scene, scene.physics
-        materials = [body.material for body in scene.bodies]
+        materials = scene.materials
         self.particles = Particles(scene.particles)
         longest = physics.gravity.interval if physics.gravity else scene.end_time - scene.start_time
         self.clock = Clock(scene.start_time, scene.end_time, longest)
@@ -149,13 +150,14 @@ class Simulation:
 
     def _first_rate(self) -> float:
         """Inverse time step [1/s] that bodies at rest density and full speed demand."""
-        numerics = self.scene.numerics
-        return max(_fastest(body) for body in self.scene.bodies) / (numerics.cfl * self.scene.dx)
+        scene = self.scene
+        speeds = [_fastest(body, material) for body, material in zip(scene.bodies, scene.materials, strict=True)]
+        return max(speeds) / (scene.numerics.cfl * scene.dx)
 
     def totals(self) -> Totals:
         """What the run must conserve, now."""
         state = self.particles.read("x", "v", "C", "E", "mass", "j", "tau", "body")
-        materials = [body.material for body in self.scene.bodies]
+        materials = self.scene.materials
         bulk = np.array([material.tillotson.A for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
         elastic = elastic_energy(state, self.rho0(state), bulk, shear)
@@ -182,7 +184,7 @@ def _gravity(scene: Scene, particles: Particles) -> SelfGravity | None:
     return Tree(particles, radius, gravity.opening) if gravity.opening > 0.0 else DirectSum(particles, radius)
 
 
-def _fastest(body: Solid) -> float:
+def _fastest(body: Solid, material: Material) -> float:
     """Highest signal speed [m/s] in an unstressed body."""
     rotation = float(np.linalg.norm(body.spin)) * body.reach
-    return body.material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + rotation
+    return material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + rotation

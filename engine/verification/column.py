@@ -24,12 +24,14 @@ class StandingWave:
         length: wavelength [m].
         amplitude: of velocity [m/s]; the strain stays near 1e-7.
         periods: duration in exact periods.
+        sound_speed: factor on the speed of sound.
     """
 
     cells: int
     length: float = 1000.0
     amplitude: float = 1e-3
     periods: float = 1.0
+    sound_speed: float = 1.0
 
     @property
     def dx(self) -> float:
@@ -39,7 +41,7 @@ class StandingWave:
     @property
     def period(self) -> float:
         """Exact period [s], wavelength over sqrt((K + 4G/3)/rho)."""
-        return self.length / Material().longitudinal_speed
+        return self.length / (self.sound_speed * Material().longitudinal_speed)
 
     @property
     def scene(self) -> Scene:
@@ -50,7 +52,7 @@ class StandingWave:
             bodies=(Box(size=size, lattice=(2 * self.cells, 4, 4), position=centre),),
             period=size,
             end_time=self.periods * self.period,
-            physics=Physics(strength=False, fracture=None, gravity=None),
+            physics=Physics(strength=False, fracture=None, gravity=None, sound_speed=self.sound_speed),
             numerics=Numerics(particles_per_cell=2.0),
         )
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.body import Body
 from engine.orbit import G
-from engine.scene import Scene
+from engine.scene import Physics, Scene
 from engine.verification.check import Check, difference
 from engine.verification.drive import Array, begin, follow
 
@@ -19,12 +19,14 @@ class Hydrostatic:
         particles: number of particles.
         end_time: how long it must stay so [s].
         seeds: of the arrangement of particles and of their flaws; the worst counts.
+        sound_speed: factor on the speed of sound.
     """
 
     name = "hydrostatic"
     particles: int = 2000
     end_time: float = 600.0
     seeds: tuple[int, ...] = (0,)
+    sound_speed: float = 1.0
 
     @property
     def body(self) -> Body:
@@ -38,7 +40,9 @@ class Hydrostatic:
 
     def at_rest(self, seed: int) -> tuple[float, float, float]:
         """RMS of P - P(r) [Pa], RMS speed [m/s] and share of broken particles after `end_time`."""
-        end = follow(begin(Scene(bodies=(self.body,), end_time=self.end_time, seed=seed)), self.end_time)
+        physics = Physics(sound_speed=self.sound_speed)
+        scene = Scene(bodies=(self.body,), end_time=self.end_time, physics=physics, seed=seed)
+        end = follow(begin(scene), self.end_time)
         r = np.linalg.norm(end.x - end.x.mean(axis=0), axis=1)
         deviation = np.sqrt(np.mean((end.P - self.pressure(r)) ** 2))
         return float(deviation), float(np.sqrt(np.mean(end.speed**2))), float(np.mean(end.damage > 0.0))

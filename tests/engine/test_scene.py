@@ -47,6 +47,8 @@ BAD = {
     "misspelt gravity": ({"physics": {"gravity": {"softning": 1}}}, "softning", "did you mean 'softening'"),
     "no interval": ({"physics": {"gravity": {"interval": 0}}}, "'physics.gravity.interval'", "greater than 0"),
     "thin gas": ({"physics": {"viscosity": {"shear": -1.0}}}, "'physics.viscosity.shear'", "-1.0"),
+    "silence": ({"physics": {"sound_speed": 0.0}}, "'physics.sound_speed'", "greater than 0", "0.0"),
+    "faster than sound": ({"physics": {"sound_speed": 1.5}}, "'physics.sound_speed'", "less than or equal to 1", "1.5"),
     "empty cells": ({"numerics": {"particles_per_cell": 0.0}}, "'numerics.particles_per_cell'", "0.0"),
     "no steps": ({"numerics": {"cfl": 0.0}}, "'numerics.cfl'", "0.0"),
     "word for a flag": ({"physics": {"shear": "perhaps"}}, "'physics.shear'", "boolean", "'perhaps'"),
@@ -125,5 +127,5 @@ def test_a_spinning_body_starts_as_a_rigid_rotation_in_hydrostatic_balance():
     assert pressure.max() == pytest.approx(2.548e6, rel=0.01)
     np.testing.assert_allclose(-state["tau"][:, 0] / (1.0 + state["j"]), pressure, rtol=1e-12, atol=1.0)
     # the compression that bears it, to first order in a strain of 1e-4
-    np.testing.assert_allclose(-2.67e10 * state["j"], pressure, rtol=2e-4)
+    np.testing.assert_allclose(-2.67e10 * state["j"], pressure, rtol=4e-4)
     assert state["mass"].sum() == pytest.approx(body.mass, rel=1e-13)

@@ -1,0 +1,69 @@
+"""The speed of sound reduced for late stages."""
+
+import numpy as np
+import pytest
+
+from engine.collision import Collision
+from engine.initial import initial_state
+from engine.materials import Material
+from engine.scene import Body, Physics, Scene
+from engine.simulation import Simulation
+from engine.verification.column import StandingWave
+from engine.verification.hydrostatic import Hydrostatic
+from tests.engine.device import evaluate
+from tests.engine.oracle import LONGITUDINAL, RHO0
+
+
+def test_all_waves_travel_at_the_factor_and_strength_stays():
+    slow = Material().slowed(0.5)
+    assert slow.longitudinal_speed == pytest.approx(0.5 * np.sqrt(LONGITUDINAL / RHO0), rel=1e-15)
+    assert slow.shear_modulus == 0.25 * Material().shear_modulus
+    assert slow.tillotson.B == 0.25 * Material().tillotson.B
+    moduli = {"tillotson", "shear_modulus"}
+    assert slow.model_dump(exclude=moduli) == Material().model_dump(exclude=moduli)
+    assert Material().slowed(1.0) == Material()
+
+
+@pytest.mark.usefixtures("taichi")
+def test_a_wave_in_a_column_takes_twice_as_long_at_half_the_speed():
+    fast, slow = StandingWave(16), StandingWave(16, sound_speed=0.5)
+    assert fast.speed == pytest.approx(Material().longitudinal_speed, rel=0.02)
+    # the error of the scheme scales along, but for the motion in the Courant condition
+    assert slow.speed == pytest.approx(0.5 * fast.speed, rel=1e-9)
+
+
+@pytest.mark.usefixtures("taichi")
+def test_a_body_is_still_in_hydrostatic_balance():
+    assert all(check.passed for check in Hydrostatic(particles=1000, sound_speed=0.25).checks())
+
+
+@pytest.mark.usefixtures("taichi")
+@pytest.mark.parametrize("factor", [1.0, 0.1])
+def test_the_equation_of_state_agrees_with_the_initial_pressure(factor):
+    scene = Scene(bodies=(Body(radius=50e3, particles=100),), end_time=1.0, physics=Physics(sound_speed=factor))
+    state = initial_state(scene)
+    law = Simulation(scene).constitution.pressure
+    mu = -state["j"] / (1.0 + state["j"])
+    P, _ = evaluate(law.pressure, mu, state["E"], state["body"], outputs=((), ()))
+    expected = -state["tau"][:, 0] / (1.0 + state["j"])
+    np.testing.assert_allclose(P, expected, rtol=1e-7)
+    np.testing.assert_allclose(mu, expected / (factor**2 * 2.67e10), rtol=0.03 if factor < 1.0 else 3e-4)
+
+
+@pytest.mark.usefixtures("taichi")
+def test_flaws_open_at_the_same_tension():
+    def grown(factor):
+        scene = Scene(bodies=(Body(radius=50e3, particles=100),), end_time=1.0, physics=Physics(sound_speed=factor))
+        law = Simulation(scene).constitution.fracture
+        tension = -np.linspace(0.0, 1e6, 100)
+        p, nothing = np.arange(100, dtype=np.int32), np.zeros(100)
+        return evaluate(law.grow, nothing, np.zeros((100, 3, 3)), tension, 1.0 + nothing, p, 0 * p)[0]
+
+    assert grown(1.0).max() > 0.0 and grown(1.0).min() == 0.0
+    assert np.array_equal(grown(0.3), grown(1.0))
+
+
+def test_a_collision_hands_it_to_its_scene():
+    collision = Collision(velocity=200.0, angle=15.0, particles=100, sound_speed=0.5)
+    assert collision.scene().physics.sound_speed == 0.5
+    assert Collision(velocity=200.0, angle=15.0).scene().physics.sound_speed == 1.0
