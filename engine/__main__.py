@@ -87,6 +87,27 @@ def verify(
     raise typer.Exit(DONE if all(result.passed for result in results) else FAILED)
 
 
+@application.command()
+def accuracy(
+    directory: Annotated[Path, typer.Argument(help="Where scenes.nc, scenes.png and scenes.md are written.")],
+    names: Annotated[list[str] | None, typer.Argument(help="Verification scenes; all if none is named.")] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Runs at the same time, one thread each.")] = os.cpu_count() or 1,
+) -> None:
+    """Turn every knob of the verification scenes; measure error and CPU time. What DIRECTORY holds is not repeated."""
+    from engine.verification.knobs import TRADEOFFS
+    from engine.verification.sweep import orders, read, sweep
+    from engine.verification.work_precision import draw
+
+    for name in set(names or ()) - set(TRADEOFFS):
+        _exit(f"unknown scene '{name}'{suggestion(name, list(TRADEOFFS))}", BAD_INPUT)
+    directory.mkdir(parents=True, exist_ok=True)
+    for run in sweep(names or TRADEOFFS, directory / "scenes.nc", workers):
+        typer.echo(f"{run.scene:12} {run.knob:28} {run.value:>8}  error {run.error:9.3g}  {run.cpu_time:8.2f} s")
+    runs = read(directory / "scenes.nc")
+    draw(runs, directory / "scenes.png")
+    typer.echo(orders(runs).to_string(index=False, float_format="%.2f"))
+
+
 def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) -> Status:
     """Import the engine only now: bad options and missing directories answer at once."""
     from engine.run import Options, run_job

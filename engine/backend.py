@@ -2,7 +2,7 @@
 
 import os
 import time
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -88,6 +88,7 @@ def _cache_directory() -> Path:
     root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     cache = root / "asteroid-collisions" / "kernels"
     for lock in cache.glob("**/*.lock"):
-        if time.time() - lock.stat().st_mtime > STALE_LOCK_AGE:
-            lock.unlink(missing_ok=True)
+        with suppress(FileNotFoundError):  # its owner may remove it at any time
+            if time.time() - lock.stat().st_mtime > STALE_LOCK_AGE:
+                lock.unlink()
     return cache

@@ -9,7 +9,7 @@ from engine.body import Body
 from engine.flaws import Flaws, draw_flaws
 from engine.materials import Fracture, Material
 from engine.verification.check import Check, share
-from engine.verification.drive import Array
+from engine.verification.drive import Array, timed
 from engine.verification.specimen import Specimen
 
 CONTINUUM_PEAK = 9.07e6
@@ -55,7 +55,8 @@ class Pull:
     def engine(self) -> Array:
         """Mean axial stress [Pa] after every step, by the engine's laws."""
         specimen = Specimen(self.body, Fracture(), self.flaws)
-        return np.array([specimen.stretch(self.rate, self.dt) for _ in range(self.steps)])
+        with timed():
+            return np.array([specimen.stretch(self.rate, self.dt) for _ in range(self.steps)])
 
     def reference(self) -> Array:
         """The same from cold rock in NumPy: stretched one way only, its strain is the sum of all increments."""

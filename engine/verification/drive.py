@@ -1,10 +1,15 @@
 """Running a scene in memory, and reading it as its equations name things."""
 
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel
 
 from engine.particles import Arrays
 from engine.scene import Scene
@@ -13,10 +18,46 @@ from engine.simulation import Simulation
 Array = NDArray[np.float64]
 
 
+_settings: ContextVar[dict[str, Any]] = ContextVar("settings")
+_stepping: ContextVar[list[float]] = ContextVar("stepping")
+
+
+@contextmanager
+def settings(values: dict[str, Any]) -> Iterator[list[float]]:
+    """Scenes that begin inside take on these values by dotted key; yields a list of CPU times [s] spent on steps."""
+    times: list[float] = []
+    tokens = _settings.set(values), _stepping.set(times)
+    try:
+        yield times
+    finally:
+        _settings.reset(tokens[0])
+        _stepping.reset(tokens[1])
+
+
+@contextmanager
+def timed() -> Iterator[None]:
+    """Counts the CPU time of what runs inside as spent on steps."""
+    begun = time.process_time()
+    yield
+    _stepping.get([]).append(time.process_time() - begun)
+
+
+def altered(model: BaseModel, key: str, value: Any) -> Any:
+    """A model with the value at a dotted key replaced; a part that is left out stays so."""
+    name, _, rest = key.partition(".")
+    part = getattr(model, name)
+    if rest and part is None:
+        return model
+    return model.model_copy(update={name: altered(part, rest, value) if rest else value})
+
+
 def begin(scene: Scene, **changes: NDArray[Any]) -> Simulation:
-    """A scene at its start, whole fields of its state replaced by `changes`."""
+    """A scene at its start, its kernels compiled, and whole fields of its state replaced by `changes`."""
+    for key, value in _settings.get({}).items():
+        scene = altered(scene, key, value)
     simulation = Simulation(scene)
     simulation.start(**changes)
+    simulation.advance(scene.start_time)
     return simulation
 
 
@@ -26,8 +67,9 @@ def follow(simulation: Simulation, until: float) -> "Moment":
     Raises:
         RunFault: a particle left the range in which the equations hold.
     """
-    while simulation.time < min(until, simulation.scene.end_time):
-        simulation.advance(until)
+    with timed():
+        while simulation.time < min(until, simulation.scene.end_time):
+            simulation.advance(until)
     return Moment(simulation.time, simulation.particles.read())
 
 

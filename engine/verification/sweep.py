@@ -1,0 +1,96 @@
+"""Error against CPU time: every verification scene at every value of every knob."""
+
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from engine import PHYSICS_VERSION, backend
+from engine.storage import write_dataset
+from engine.verification.drive import fitted_order, settings
+from engine.verification.knobs import TRADEOFFS
+
+KEYS = ["scene", "knob", "value"]
+
+ATTRIBUTES = {
+    "error": {"long_name": "error against the exact solution or published values", "units": "1"},
+    "cpu_time": {"long_name": "CPU time of all time steps", "units": "s"},
+}
+
+
+@dataclass(frozen=True)
+class Run:
+    """One scene with one knob turned.
+
+    Attributes:
+        scene: name of the verification scene.
+        knob: what is turned: `particles`, `cells` or `steps`, or a dotted key of the scene.
+        value: where it is turned to, as text.
+        error: see `Tradeoff.quantity`.
+        cpu_time: of all time steps [s], kernels compiled before.
+    """
+
+    scene: str
+    knob: str
+    value: str
+    error: float
+    cpu_time: float
+
+
+def measure(scene: str, knob: str, value: Any) -> Run:
+    """Run one scene in this process, which must have started nothing else."""
+    backend.start(threads=1)
+    tradeoff = TRADEOFFS[scene]
+    turned = knob == tradeoff.resolution
+    with settings({} if turned else {knob: value}) as times:
+        error = tradeoff.error(value if turned else tradeoff.values[0])
+    return Run(scene, knob, str(value), error, sum(times))
+
+
+def sweep(scenes: Iterable[str], path: Path, workers: int) -> Iterator[Run]:
+    """All runs that the file at `path` does not hold yet, each in a process of its own; the file grows with each."""
+    done = read(path)
+    known = set() if done.empty else set(done[KEYS].itertuples(index=False, name=None))
+    wanted = [(scene, knob, value) for scene in scenes for knob, value in TRADEOFFS[scene].runs]
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
+        jobs = [pool.submit(measure, *run) for run in wanted if (*run[:2], str(run[2])) not in known]
+        for job in as_completed(jobs):
+            done = pd.concat([done, pd.DataFrame([asdict(job.result())])], ignore_index=True)
+            write(path, done)
+            yield job.result()
+
+
+def read(path: Path) -> pd.DataFrame:
+    """The runs in a file, none if there is no such file or it was made by other physics."""
+    empty = pd.DataFrame(columns=[*KEYS, "error", "cpu_time"])
+    if not path.is_file():
+        return empty
+    with xr.open_dataset(path) as dataset:
+        current = dataset.attrs["physics_version"] == PHYSICS_VERSION
+        return dataset.load().to_dataframe().reset_index(drop=True) if current else empty
+
+
+def write(path: Path, runs: pd.DataFrame) -> None:
+    """Runs as a data set with the dimension `run`."""
+    dataset = xr.Dataset.from_dataframe(runs.rename_axis("run"))
+    for name, attributes in ATTRIBUTES.items():
+        dataset[name].attrs = attributes
+    dataset.attrs = {"Conventions": "CF-1.11", "physics_version": PHYSICS_VERSION}
+    write_dataset(path, dataset)
+
+
+def orders(runs: pd.DataFrame) -> pd.DataFrame:
+    """Exponent q of error ~ value^q for resolutions and time steps, by scene and knob."""
+    rows = []
+    for (scene, knob), group in runs.groupby(["scene", "knob"], sort=False):
+        if knob in ("particles", "cells", "steps", "numerics.cfl") and len(group) > 1:
+            sizes = np.asarray(group["value"], dtype=float) ** (-1.0 / 3.0 if knob == "particles" else 1.0)
+            sign = -1.0 if knob in ("cells", "steps") else 1.0
+            rows.append((scene, knob, sign * fitted_order(list(sizes), list(group["error"]))))
+    return pd.DataFrame(rows, columns=["scene", "knob", "order in dx or dt"])
