@@ -3,7 +3,9 @@ from collections import defaultdict
 import numpy as np
 import pytest
 
+from engine.body import Box
 from engine.initial import initial_state
+from engine.scene import Numerics, Physics, Scene
 from tests.engine.device import Array, traceless, worst
 from tests.engine.moving import advance, body, one_step, rubble_collision, scene, spline, started
 from tests.engine.oracle import RHO0
@@ -119,6 +121,36 @@ def test_free_expansion_follows_hubbles_law():
     assert worst(found["v"], H * x, 50.0) < 1e-12
     assert not found["tau"].any() and not found["E"].any()
     assert np.abs(traceless(found["B"][:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]])).max() < 1e-12
+
+
+def damping(kdx: float, per_cell: int) -> float:
+    """Share of a shear wave's velocity that one step leaves (engine/physics.md, section 1)."""
+    u = (np.arange(3 * per_cell) + 0.5) / per_cell - 1.5
+    terms = [spline(u) * spline(u + j) * (1.0 + 4.0 * u * (u + j)) * np.cos(kdx * j) for j in range(-2, 3)]
+    return float(np.sum(terms) / per_cell)
+
+
+@pytest.mark.parametrize(("cells", "per_cell"), [(8, 2), (8, 4), (32, 2)])
+def test_the_transfer_damps_a_shear_wave_by_the_closed_form(cells, per_cell):
+    box = Box(size=(4.0, 4.0, cells), lattice=(4, 4, cells * per_cell), position=(2.0, 2.0, 0.5 * cells))
+    physics = Physics(shear=False, strength=False, fracture=None, gravity=None)
+    numerics = Numerics(particles_per_cell=per_cell)
+    given = Scene(bodies=(box,), period=(4.0, 4.0, cells), end_time=1.0, physics=physics, numerics=numerics)
+    wave = np.sin(2.0 * np.pi / cells * initial_state(given)["x"][:, 2])
+    simulation = started(given, v=np.outer(wave, [1.0, 0.0, 0.0]))
+    amplitudes = []
+    for _ in range(4):
+        one_step(simulation)
+        amplitudes.append(float(np.mean(wave * simulation.particles.read("v")["v"][:, 0])))
+    kept = np.array(amplitudes[1:]) / amplitudes[:-1]
+    assert np.abs(kept - damping(2.0 * np.pi / cells, per_cell)).max() < 1e-13
+
+
+def test_long_waves_lose_a_share_of_their_fourth_power():
+    """1 - (k dx)^4 / 42, where particles are dense."""
+    loss = [(1.0 - damping(kdx, 1000)) / kdx**4 for kdx in (0.1, 0.05)]
+    # what is left of the limit is of order (k dx)^2
+    assert loss[1] + (loss[1] - loss[0]) / 3.0 == pytest.approx(1.0 / 42.0, rel=1e-5)
 
 
 def test_a_rubble_collision_keeps_momentum_and_angular_momentum():
