@@ -11,8 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.errors import RunFault
-
 EDGE = 4
 """Cells along an edge of a block, and nodes along an edge of a tile."""
 
@@ -44,22 +42,19 @@ class Blocks:
     source: Integers
 
 
+def out_of_range(x: NDArray[np.floating], dx: float) -> NDArray[np.bool_]:
+    """Which particles block coordinates cannot reach, or are nowhere; arguments as `block_of`."""
+    return np.asarray(~(np.abs(x / (EDGE * dx)) < HALF_RANGE - 3).all(axis=1))
+
+
 def block_of(x: NDArray[np.floating], dx: float) -> Integers:
     """Coordinates of the block that owns each particle.
 
     Args:
-        x: positions [m], shape [particle_count, 3].
+        x: positions [m], none of them out of range, shape [particle_count, 3].
         dx: grid spacing [m].
-
-    Raises:
-        RunFault: a particle is beyond the range of block coordinates.
     """
-    block = np.floor((x / dx - 0.5) / EDGE)
-    far = ~(np.abs(block) < HALF_RANGE - 2).all(axis=1)
-    if far.any():
-        particle = int(np.argmax(far))
-        raise RunFault(f"position of particle {particle} is {x[particle]} m: not finite, or beyond the grid's range")
-    return block.astype(np.int32)
+    return np.floor((x / dx - 0.5) / EDGE).astype(np.int32)
 
 
 def wrap(x: NDArray[np.float64], block: Integers, dx: float, period: Period) -> tuple[NDArray[np.float64], Integers]:

@@ -1,5 +1,8 @@
 """What the engine tells its user when it cannot go on."""
 
+import math
+from dataclasses import dataclass
+
 
 class SceneError(ValueError):
     """The input cannot be used: says which file and key, what was given, and what is allowed."""
@@ -14,4 +17,54 @@ class JobBusyError(JobError):
 
 
 class RunFault(RuntimeError):
-    """A running simulation left the range in which its equations hold: says which quantity, particle and time."""
+    """A simulation, or what it left, holds values outside the range in which its equations hold."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Why a running simulation was stopped.
+
+    Attributes:
+        quantity: what left its range, with its unit.
+        value: what it was; `None` when it was not finite.
+        allowed: its range, in words.
+        time: simulated time [s] at which it was found.
+        particle: index of the particle; `None` for a quantity of the whole run.
+        advice: what to try.
+    """
+
+    quantity: str
+    value: float | None
+    allowed: str
+    time: float
+    particle: int | None
+    advice: str
+
+    def __str__(self) -> str:
+        whose = "" if self.particle is None else f" of particle {self.particle}"
+        value = "not finite" if self.value is None else f"{self.value:.6g}"
+        return f"{self.quantity}{whose} is {value} at t = {self.time:.6g} s, allowed: {self.allowed}; {self.advice}"
+
+
+class GuardFault(RunFault):
+    """A guard stopped the run; `fault` says why.
+
+    Args:
+        fault: the reason.
+    """
+
+    def __init__(self, fault: Fault) -> None:
+        super().__init__(str(fault))
+        self.fault = fault
+
+
+def stop(
+    quantity: str,
+    value: float,
+    allowed: str,
+    time: float,
+    particle: int | None = None,
+    advice: str = "try a smaller numerics.cfl",
+) -> GuardFault:
+    """What to raise to stop a run; arguments as the attributes of `Fault`, except that `value` may not be finite."""
+    return GuardFault(Fault(quantity, value if math.isfinite(value) else None, allowed, time, particle, advice))

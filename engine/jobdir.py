@@ -6,13 +6,13 @@ import socket
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from json import JSONDecodeError, loads
 from pathlib import Path
 
 import psutil
 
-from engine.errors import JobBusyError, JobError
+from engine.errors import Fault, JobBusyError, JobError
 from engine.storage import write_json
 
 STATES = ("pending", "running", "interrupted", "done", "failed")
@@ -29,6 +29,7 @@ class Status:
     Attributes:
         state: `running`, `done` or `failed`; readers derive `pending` and `interrupted`.
         reason: one line on a failure, empty otherwise.
+        fault: the same in parts, when a guard stopped the run.
         time, start_time, end_time: simulated time [s], now and at both ends.
         step: time steps done.
         wall_time: computing time [s] of all sessions of this job.
@@ -40,6 +41,7 @@ class Status:
 
     state: str
     reason: str = ""
+    fault: Fault | None = None
     time: float = 0.0
     start_time: float = 0.0
     end_time: float = 0.0
@@ -115,12 +117,14 @@ class JobDirectory:
             content = loads(self.status_file.read_text(encoding="utf-8"))
             known = {field.name for field in fields(Status)}
             status = Status(**{key: value for key, value in content.items() if key in known})
+            if status.fault:
+                status = replace(status, fault=Fault(**content["fault"]))
         except FileNotFoundError:
             return Status(state="pending")
         except (OSError, JSONDecodeError, UnicodeDecodeError, TypeError, AttributeError) as error:
             raise JobError(f"{self.status_file}: damaged: {error}") from error
         if status.state == "running" and not _is_alive(status):
-            return Status(**{**asdict(status), "state": "interrupted"})
+            return replace(status, state="interrupted")
         return status
 
     def write_status(self, status: Status) -> None:

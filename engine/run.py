@@ -13,15 +13,16 @@ import numpy as np
 
 from engine import PHYSICS_VERSION, backend
 from engine.checkpoint import load_checkpoint, save_checkpoint
-from engine.errors import RunFault
-from engine.history import History
+from engine.errors import Fault, GuardFault
+from engine.guard import Guard
+from engine.history import History, Row
 from engine.jobdir import HEARTBEAT_PERIOD, JobDirectory, Status
 from engine.ledger import as_row
 from engine.provenance import record_session
 from engine.scene import Scene, scene_in
 from engine.simulation import Simulation
 from engine.snapshot import FIELDS, snapshot
-from engine.storage import is_finite, read_dataset, write_dataset
+from engine.storage import read_dataset, write_dataset
 
 log = logging.getLogger("engine")
 
@@ -81,8 +82,8 @@ class Run:
             self._begin()
             self._loop()
             return self._finish() if self.simulation.finished else self._interrupt()
-        except RunFault as fault:
-            return self._fail(str(fault))
+        except GuardFault as stopped:
+            return self._fail(stopped.fault)
         finally:
             for number, handler in previous.items():
                 signal.signal(number, handler)
@@ -99,6 +100,8 @@ class Run:
         else:
             self._restore(progress)
             log.info("resumed at t = %.6g s, step %d", self.simulation.time, self.simulation.step)
+        first = self.history.rows[0] if self.history.rows else self._row()
+        self.guard = Guard(self.scene, first, self.simulation.first_dt)
         record_session(self.job, self.scene, self.options.arch, self.options.threads)
         self._write_outputs()
         self._report("running")
@@ -113,7 +116,7 @@ class Run:
     def _loop(self) -> None:
         steps, since = self.simulation.step, time.monotonic()
         while not (self.simulation.finished or self.stopping):
-            self.simulation.advance(min(self.history_due, self.snapshot_due))
+            self._advance()
             self._write_outputs()
             now = time.monotonic()
             if now - self.saved >= self.options.checkpoint_interval:
@@ -122,6 +125,11 @@ class Run:
                 self.rate = (self.simulation.step - steps) / (now - since)
                 steps, since = self.simulation.step, now
                 self._report("running")
+
+    def _advance(self) -> None:
+        simulation = self.simulation
+        simulation.advance(min(self.history_due, self.snapshot_due))
+        self.guard.check_time_step(simulation.next_dt, simulation.time, simulation.particles)
 
     def _write_outputs(self) -> None:
         """Record what has come due; the last state of all is always recorded."""
@@ -134,10 +142,15 @@ class Run:
             self.snapshot_due = simulation.time + (output.snapshot_interval or np.inf)
 
     def _append_history(self) -> None:
+        row = self._row()
+        self._check(row)
+        self.history.append(row)
+
+    def _row(self) -> Row:
+        """The row of the history for the present moment."""
         simulation = self.simulation
-        totals = simulation.totals()
-        row = as_row(
-            totals,
+        return as_row(
+            simulation.totals(),
             time=simulation.time,
             step=simulation.step,
             dt=float(simulation.clock.dt[None]),
@@ -145,10 +158,10 @@ class Run:
             damaged_fraction=float(np.mean(simulation.particles.read("root")["root"] ** 3)),
             isolated=float(simulation.transfer.alone_count[None]),
         )
-        if not all(np.isfinite(value).all() for value in row.values()):
-            bad = [name for name, value in row.items() if not np.isfinite(value).all()]
-            raise RunFault(f"{', '.join(bad)} not finite at t = {simulation.time:.6g} s: try a smaller numerics.cfl")
-        self.history.append(row)
+
+    def _check(self, row: Row) -> None:
+        """Let nothing be written that the guard has not passed."""
+        self.guard.check(row, self.simulation.particles.read())
 
     def _attributes(self) -> dict[str, Any]:
         return {
@@ -174,6 +187,7 @@ class Run:
 
     def _save(self) -> None:
         """Write history, then checkpoint: a resumed run drops rows that are newer than its checkpoint."""
+        self._check(self._row())
         self._write_history()
         due = {"history_due": self.history_due, "snapshot_due": self.snapshot_due, "wall_time": self._wall_time()}
         save_checkpoint(self.job, self.simulation, due)
@@ -182,12 +196,13 @@ class Run:
     def _wall_time(self) -> float:
         return self.wall_before + time.monotonic() - self.begun
 
-    def _report(self, state: str, reason: str = "") -> Status:
+    def _report(self, state: str, reason: str = "", fault: Fault | None = None) -> Status:
         simulation, scene = self.simulation, self.scene
         left = (scene.end_time - simulation.time) / max(float(simulation.clock.dt[None]), 1e-300)
         status = Status(
             state=state,
             reason=reason,
+            fault=fault,
             time=simulation.time,
             start_time=scene.start_time,
             end_time=scene.end_time,
@@ -202,11 +217,9 @@ class Run:
         return status
 
     def _finish(self) -> Status:
-        final = self._particles(np.float64)
-        if not is_finite(final):
-            return self._fail("the final state is not finite: try a smaller numerics.cfl")
+        self._check(self._row())
         self._write_history()
-        write_dataset(self.job.final, final)
+        write_dataset(self.job.final, self._particles(np.float64))
         log.info("done: %d steps in %.1f s", self.simulation.step, self._wall_time())
         return self._report("done")
 
@@ -215,8 +228,9 @@ class Run:
         log.info("interrupted at t = %.6g s; run again to resume", self.simulation.time)
         return self._report("interrupted", "stopped by a signal; run again to resume")
 
-    def _fail(self, reason: str) -> Status:
+    def _fail(self, fault: Fault) -> Status:
+        """Keep the last checkpoint as it is and say what stopped the run."""
         if self.history.rows:
             self._write_history()
-        log.error("failed: %s", reason)
-        return self._report("failed", reason)
+        log.error("failed: %s", fault)
+        return self._report("failed", str(fault), fault)

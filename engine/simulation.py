@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.blocks import block_of, build_blocks, wrap
+from engine.blocks import EDGE, HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.body import Solid
 from engine.clock import FAULT_NONE, Clock
 from engine.constitution import Constitution
 from engine.direct_sum import DirectSum
-from engine.errors import RunFault
+from engine.errors import stop
 from engine.fracture import Fracture, Unbreakable
 from engine.gravity import SelfGravity
 from engine.initial import all_flaws, initial_state
@@ -85,7 +85,7 @@ class Simulation:
         Which steps are taken depends on the scene alone, never on how they are spread over calls.
 
         Raises:
-            RunFault: a particle left the range in which the equations hold.
+            GuardFault: a particle left the range in which the equations hold.
         """
         self._handle_events()
         self.clock.pause_time[None] = min(until, self.gravity_due)
@@ -93,8 +93,13 @@ class Simulation:
         self._check_fault()
 
     def rebuild_blocks(self) -> None:
-        """Sort particles into the blocks they are in now."""
+        """Sort particles into the blocks they are in now.
+
+        Raises:
+            GuardFault: a particle is beyond the range of block coordinates.
+        """
         x = self.particles.read("x")["x"]
+        self._require_in_range(x)
         block = block_of(x, self.scene.dx)
         if any(self.scene.period):
             x, block = wrap(x, block, self.scene.dx, self.scene.period_blocks)
@@ -122,7 +127,7 @@ class Simulation:
 
     def _update_gravity(self) -> None:
         assert self.gravity and self.scene.physics.gravity
-        interval, dt = self.scene.physics.gravity.interval, self._next_dt()
+        interval, dt = self.scene.physics.gravity.interval, self.next_dt
         before = self.particles.read("acceleration")["acceleration"]
         # mean time of the kicks that will use it: a step kicks from where particles are when it begins
         self.gravity.accelerate(ahead=0.5 * dt * (math.ceil(interval / dt) - 1))
@@ -132,21 +137,31 @@ class Simulation:
 
     def _launch(self) -> None:
         left = min(self.clock.pause_time[None], self.scene.end_time) - self.time
-        for _ in range(min(LAUNCHES, math.ceil(left / self._next_dt()) + 1)):
+        for _ in range(min(LAUNCHES, math.ceil(left / self.next_dt) + 1)):
             self.transfer.step()
 
-    def _next_dt(self) -> float:
+    @property
+    def next_dt(self) -> float:
         """The next time step [s]."""
         return float(1.0 / max(self.clock.rate[None], self.clock.least_rate[None]))
+
+    @property
+    def first_dt(self) -> float:
+        """The time step [s] that the scene begins with."""
+        return float(1.0 / max(self._first_rate(), self.clock.least_rate[None]))
 
     def _check_fault(self) -> None:
         if self.clock.fault[None] != FAULT_NONE:
             p = int(self.clock.fault_particle[None])
-            state = {name: values[p] for name, values in self.particles.read("x", "v", "j", "E").items()}
-            raise RunFault(
-                f"det F of particle {p} is {1.0 + state['j']:.3g} at t = {self.time:.6g} s, x = {state['x']} m, "
-                f"v = {state['v']} m/s, E = {state['E']:.3g} J/kg: try a smaller numerics.cfl"
-            )
+            j = float(self.particles.read("j")["j"][p])
+            raise stop("det F", 1.0 + j, "above 0", self.time, p)
+
+    def _require_in_range(self, x: NDArray[np.float64]) -> None:
+        far = out_of_range(x, self.scene.dx)
+        if far.any():
+            p, largest = int(np.argmax(far)), EDGE * HALF_RANGE * self.scene.dx
+            distance, advice = float(np.abs(x[p]).max()), "end the run earlier, or make cells larger"
+            raise stop("coordinate [m]", distance, f"below {largest:.3g}", self.time, p, advice)
 
     def _first_rate(self) -> float:
         """Inverse time step [1/s] that bodies at rest density and full speed demand."""

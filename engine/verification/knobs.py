@@ -72,7 +72,7 @@ def _shock(cells: int) -> float:
 
 def _layer(cells: int) -> float:
     layer = Layer(float(np.deg2rad(35.0)), float(np.tan(np.deg2rad(30.0))), cells)
-    return _share(layer.measure(), layer.acceleration)
+    return _share(layer.slide().acceleration, layer.acceleration)
 
 
 def _bar(steps: int) -> float:
@@ -124,7 +124,7 @@ TRADEOFFS = {
         CFL | CELLS,
     ),
     "bar": Tradeoff("peak stress at 10 /s, relative", _bar, "steps", (1000, 500, 2000, 4000), {}),
-    "slope": Tradeoff("acceleration at 35 deg, relative", _layer, "cells", (8, 16), CFL),
+    "slope": Tradeoff("acceleration at 35 deg, relative", _layer, "cells", (16, 8, 32, 64), CFL),
     "cliff": Tradeoff(
         "height at rest from Jutzi's SPH, RMS [L0]",
         lambda cells: _checked(Cliff(cells), "final: RMS of H from Jutzi's SPH"),

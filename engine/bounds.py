@@ -1,0 +1,90 @@
+"""Bounds that follow from a scene and the energies it starts with (engine/physics.md, section 13)."""
+
+import math
+
+import numpy as np
+from scipy.optimize import brentq
+
+from engine.history import Row
+from engine.materials import Material
+from engine.orbit import G
+from engine.scene import Scene
+
+LARGEST_COMPRESSION = 1e6
+"""Bounds of rho/rho0 beyond this are none."""
+
+
+def speed_scale(scene: Scene, start: Row) -> float:
+    """Speed [m/s] that the scene can give to all its matter, were every energy turned into motion.
+
+    Args:
+        scene: what is simulated.
+        start: first row of its history.
+    """
+    bodies = 2.0 * max(float(np.linalg.norm(b.velocity) + np.linalg.norm(b.spin) * b.reach) for b in scene.bodies)
+    energy = float(start["kinetic_energy"] + abs(start["internal_energy"]) + start["elastic_energy"])
+    return math.sqrt(bodies**2 + 2.0 * energy / float(start["mass"]) + _fall(scene) ** 2)
+
+
+def _fall(scene: Scene) -> float:
+    """Speed [m/s] that gravity can give: from rest to the centre of all mass in one softened ball, or all the time."""
+    gravity = scene.physics.gravity
+    if gravity:
+        mass = sum(body.mass for body in scene.bodies)
+        return math.sqrt(3.0 * G * mass / (gravity.softening * scene.spacing))
+    pull = float(np.linalg.norm(scene.physics.uniform_gravity or 0.0))
+    return pull * (scene.end_time - scene.start_time)
+
+
+def compression_limit(material: Material, energy: float) -> float:
+    """rho/rho0 at which cold compression has used up a specific energy [J/kg]; infinite if it never does."""
+
+    def missing(log_eta: float) -> float:
+        return cold_energy(material, math.exp(log_eta)) - energy
+
+    largest = math.log(LARGEST_COMPRESSION)
+    return math.exp(brentq(missing, 0.0, largest)) if missing(largest) > 0.0 else math.inf
+
+
+def cold_energy(material: Material, eta: float) -> float:
+    """Specific energy [J/kg] of compression to eta without heat: the integral of (A mu + B mu^2)/rho^2 over rho."""
+    A, B, log = material.tillotson.A, material.tillotson.B, math.log(eta)
+    return (A * (log + 1.0 / eta - 1.0) + B * (eta - 1.0 / eta - 2.0 * log)) / material.rho0
+
+
+def energy_growth(scene: Scene, row: Row, start: Row) -> float:
+    """Growth of the total energy as a share of all energies that can turn into one another [-].
+
+    Those are what the run starts with, of either sign, and what gravity has given since. A scheme that only loses
+    energy never grows; growth that is smaller than what the transfer dissipates meanwhile does not show.
+
+    Args:
+        scene: what is simulated.
+        row, start: a row of its history, and the first.
+    """
+    parts = ("kinetic_energy", "affine_kinetic_energy", "internal_energy", "elastic_energy", "gravitational_energy")
+    scale = sum(abs(float(start[name])) for name in parts) + _rounding(scene, start)
+    scale += abs(float(row["gravitational_energy"] - start["gravitational_energy"]))
+    return float(row["total_energy"] - start["total_energy"]) / scale
+
+
+def _rounding(scene: Scene, start: Row) -> float:
+    """Energy [J] that is nothing: the last digit of what waves carry, for scenes that start without any."""
+    speed = max(body.material.longitudinal_speed for body in scene.bodies)
+    return float(np.finfo(np.float64).eps) * float(start["mass"]) * speed**2
+
+
+def momentum_drift(row: Row, start: Row) -> float:
+    """Size of the change of the total momentum [kg m/s]."""
+    return float(np.linalg.norm(row["momentum"] - start["momentum"]))
+
+
+def keeps_momentum(scene: Scene) -> bool:
+    """Whether nothing from outside pushes."""
+    return not scene.physics.walls and not any(scene.physics.uniform_gravity or ())
+
+
+def keeps_energy(scene: Scene) -> bool:
+    """Whether the total is known: not where matter falls along a periodic axis, and is lifted back each period."""
+    pull = scene.physics.uniform_gravity or (0.0, 0.0, 0.0)
+    return not any(length and along for length, along in zip(scene.period, pull, strict=True))

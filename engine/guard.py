@@ -1,0 +1,113 @@
+"""The guard of a run: compares its state with the scene's bounds whenever something is written.
+
+Section 13 of engine/physics.md gives the reason for each bound. A check reads the state and changes nothing.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift, speed_scale
+from engine.errors import stop
+from engine.history import Row
+from engine.particles import Arrays, Particles
+from engine.scene import Scene
+from engine.transfer import LARGEST_INCREMENT
+
+SPEED_FACTOR = 10.0
+"""Largest speed in units of the scene's: rebounds reach two or three of them, jets a few."""
+
+ENERGY_GROWTH = 0.05
+"""Largest growth of the total energy, in the measure of `energy_growth`."""
+
+ROUNDINGS = 1e6
+"""Largest change of the total momentum, in units of the last place of mass times the scene's speeds."""
+
+STEPS_FACTOR = 1e4
+"""Most time steps that a run may need, in units of what its first step foresees."""
+
+
+class Guard:
+    """The bounds of one run.
+
+    Args:
+        scene: what is simulated.
+        start: first row of the run's history.
+        dt: time step [s] that the scene begins with.
+    """
+
+    def __init__(self, scene: Scene, start: Row, dt: float) -> None:
+        self.scene, self.start, self.shortest_step = scene, start, dt / STEPS_FACTOR
+        scale, materials = speed_scale(scene, start), {body.material for body in scene.bodies}
+        self.speed = SPEED_FACTOR * scale
+        self.compression = max(compression_limit(material, 0.5 * self.speed**2) for material in materials)
+        self.momentum = float(start["mass"]) * (scale + max(material.longitudinal_speed for material in materials))
+
+    def check(self, row: Row, state: Arrays) -> None:
+        """Look at a row of the history and at all particles of the same moment.
+
+        Args:
+            row: conserved quantities.
+            state: every field of every particle.
+
+        Raises:
+            GuardFault: a quantity is outside its bounds.
+        """
+        time = float(row["time"])
+        require_finite(state, time)
+        _require_at_most("speed [m/s]", np.linalg.norm(state["v"], axis=1), self.speed, time)
+        _require_at_most("rho/rho0", 1.0 / (1.0 + state["j"]), self.compression, time)
+        self._check_mass(row, time)
+        self._check_momentum(row, time, float(np.finfo(state["v"].dtype).eps))
+        self._check_energy(row, time)
+
+    def check_time_step(self, dt: float, time: float, particles: Particles) -> None:
+        """Look at the next time step [s] at a time [s]; the particle with the highest rates answers for a short one.
+
+        Raises:
+            GuardFault: at such steps the run would not end.
+        """
+        if not dt >= self.shortest_step:
+            state = particles.read("v", "C")
+            strain = np.linalg.norm(state["C"], axis=(1, 2)) / LARGEST_INCREMENT
+            rate = np.maximum(np.linalg.norm(state["v"], axis=1) / self.scene.dx, strain)
+            raise stop("time step [s]", dt, f"at least {self.shortest_step:.3g}", time, int(np.argmax(rate)))
+
+    def _check_mass(self, row: Row, time: float) -> None:
+        mass, expected = float(row["mass"]), float(self.start["mass"])
+        if mass != expected:
+            advice = "particles were changed from outside: run the scene in a new directory"
+            raise stop("total mass [kg]", mass, f"{expected!r}", time, advice=advice)
+
+    def _check_momentum(self, row: Row, time: float, rounding: float) -> None:
+        drift, allowed = momentum_drift(row, self.start), ROUNDINGS * rounding * self.momentum
+        if keeps_momentum(self.scene) and not drift <= allowed:
+            raise stop("change of total momentum [kg m/s]", drift, f"at most {allowed:.3g}", time)
+
+    def _check_energy(self, row: Row, time: float) -> None:
+        growth = energy_growth(self.scene, row, self.start)
+        if keeps_energy(self.scene) and not growth <= ENERGY_GROWTH:
+            raise stop("growth of total energy, as a share of it", growth, f"at most {ENERGY_GROWTH:g}", time)
+
+
+def require_finite(state: Arrays, time: float) -> None:
+    """Accept only finite numbers.
+
+    Args:
+        state: fields of every particle.
+        time: simulated time [s].
+
+    Raises:
+        GuardFault: names the first field, and its first particle, that holds another one.
+    """
+    for name, values in state.items():
+        bad = ~np.isfinite(values).reshape(len(values), -1).all(axis=1)
+        if bad.any():
+            raise stop(name, math.nan, "finite", time, int(np.argmax(bad)))
+
+
+def _require_at_most(quantity: str, values: NDArray[np.float64], limit: float, time: float) -> None:
+    particle = int(np.argmax(values))
+    if values[particle] > limit:
+        raise stop(quantity, float(values[particle]), f"at most {limit:.4g}", time, particle)

@@ -1,0 +1,224 @@
+"""The guard: every bound holds what it should and names what breaks it."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from campaigns.display import line
+from campaigns.state import JobState, status_of
+from engine.bounds import cold_energy, compression_limit, energy_growth, speed_scale
+from engine.checkpoint import save_checkpoint
+from engine.collision import Collision
+from engine.errors import Fault, GuardFault, stop
+from engine.guard import ENERGY_GROWTH, ROUNDINGS, SPEED_FACTOR, STEPS_FACTOR, Guard
+from engine.history import Row
+from engine.jobdir import JobDirectory, Status
+from engine.ledger import as_row, totals
+from engine.materials import Material, Tillotson
+from engine.particles import Arrays, Particles
+from engine.run import Options, Run
+from engine.scene import Physics, Scene, Wall
+from engine.simulation import Simulation
+from tests.engine.jobs import write_job
+from tests.engine.moving import body, scene
+
+COUNT = 20
+
+
+def collision(**changes: Any) -> Scene:
+    """Two bodies of half the particles each."""
+    return Collision.model_validate({"velocity": 200.0, "angle": 0.0, "particles": COUNT // 2, **changes}).scene()
+
+
+def state_of(given: Scene) -> Arrays:
+    """A state as calm as can be."""
+    generator, count = np.random.default_rng(1), given.particles
+    return {
+        "x": generator.normal(size=(count, 3)),
+        "v": np.array([[100.0, 0.0, 0.0], [-100.0, 0.0, 0.0]] * (count // 2)),
+        "C": np.zeros((count, 3, 3)),
+        "j": np.zeros(count),
+        "E": np.zeros(count),
+        "mass": np.full(count, 3.0),
+    }
+
+
+def row_of(state: Arrays, gravity: float = 0.0) -> Row:
+    return as_row(totals(state, 1.0, np.zeros(len(state["mass"])), gravity), time=5.0)
+
+
+def guard_of(given: Scene) -> tuple[Guard, Arrays]:
+    state = state_of(given)
+    return Guard(given, row_of(state), dt=2.0), state
+
+
+def stopped(guard: Guard, state: Arrays, row: Row | None = None) -> Fault:
+    """What the guard says of a state."""
+    with pytest.raises(GuardFault) as caught:
+        guard.check(row_of(state) if row is None else row, state)
+    return caught.value.fault
+
+
+def changed(state: Arrays, name: str, value: Any, particle: int = 7) -> Arrays:
+    values = state[name].copy()
+    values[particle] = value
+    return {**state, name: values}
+
+
+def test_a_calm_state_passes():
+    guard, state = guard_of(collision())
+    guard.check(row_of(state), state)
+
+
+@pytest.mark.parametrize("name", ["x", "v", "C", "j", "E"])
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_what_is_not_finite_is_named(name, bad):
+    guard, state = guard_of(collision())
+    fault = stopped(guard, changed(state, name, bad))
+    assert (fault.quantity, fault.particle, fault.value, fault.allowed, fault.time) == (name, 7, None, "finite", 5.0)
+    assert f"{name} of particle 7 is not finite at t = 5 s" in str(fault)
+
+
+def test_a_speed_beyond_ten_times_the_scenes_is_named():
+    guard, state = guard_of(collision(gravity=None))
+    # 200 m/s between the bodies, and the kinetic energy per mass of a state at 100 m/s
+    assert guard.speed == pytest.approx(SPEED_FACTOR * np.hypot(200.0, 100.0))
+    fast = changed(state, "v", [0.0, 1.001 * guard.speed, 0.0])
+    fault = stopped(guard, fast, row_of(state))
+    assert (fault.quantity, fault.particle, fault.value) == ("speed [m/s]", 7, pytest.approx(1.001 * guard.speed))
+    guard.check(row_of(state), changed(state, "v", [0.0, 0.999 * guard.speed, 0.0]))
+
+
+def test_gravity_and_spin_widen_the_bound_of_speeds():
+    heavy = collision()
+    plain = heavy.model_copy(update={"physics": Physics(gravity=None)})
+    start = row_of(state_of(plain))
+    mass = sum(part.mass for part in heavy.bodies)
+    well = 3.0 * 6.6743e-11 * mass / heavy.spacing
+    assert speed_scale(heavy, start) ** 2 == pytest.approx(speed_scale(plain, start) ** 2 + well)
+    turning = scene(body(velocity=(0.0, 3.0, 4.0), spin=(0.0, 0.0, 1e-4)))
+    assert speed_scale(turning, {**start, "kinetic_energy": np.zeros(())}) == pytest.approx(2.0 * (5.0 + 5.0))
+
+
+def test_a_compression_beyond_the_energy_of_the_bound_is_named():
+    guard, state = guard_of(collision())
+    j = 1.0 / (1.001 * guard.compression) - 1.0
+    fault = stopped(guard, changed(state, "j", j))
+    assert (fault.quantity, fault.particle) == ("rho/rho0", 7)
+    guard.check(row_of(state), changed(state, "j", 1.0 / (0.999 * guard.compression) - 1.0))
+
+
+@pytest.mark.parametrize("eta", [1.0, 1.01, 2.0, 30.0])
+def test_the_cold_curve_is_the_work_of_its_pressure(eta):
+    rock = Tillotson()
+    work, _ = quad(lambda x: (rock.A * (x - 1.0) + rock.B * (x - 1.0) ** 2) / (2700.0 * x**2), 1.0, eta)
+    assert cold_energy(Material(), eta) == pytest.approx(work, rel=1e-8)
+
+
+def test_the_bound_of_compression_uses_the_energy_up_and_soft_matter_has_none():
+    assert cold_energy(Material(), compression_limit(Material(), 5e6)) == pytest.approx(5e6)
+    soft = Material(tillotson=Tillotson(A=1.0, B=0.0))
+    assert compression_limit(soft, 5e6) == np.inf
+
+
+def test_mass_must_stay_to_the_last_digit():
+    guard, state = guard_of(collision())
+    fault = stopped(guard, changed(state, "mass", 3.0 * (1.0 + 1e-13)))
+    assert fault.quantity == "total mass [kg]" and fault.particle is None
+
+
+def test_momentum_may_change_by_round_off_only_unless_something_pushes():
+    given = collision()
+    guard, state = guard_of(given)
+    row = row_of(state)
+    allowed = ROUNDINGS * np.finfo(float).eps * guard.momentum
+    pushed = {**row, "momentum": row["momentum"] + [0.0, 1.01 * allowed, 0.0]}
+    assert stopped(guard, state, pushed).quantity == "change of total momentum [kg m/s]"
+    guard.check({**row, "momentum": row["momentum"] + [0.0, 0.99 * allowed, 0.0]}, state)
+    for outside in ({"walls": (Wall(),)}, {"uniform_gravity": (0.0, 0.0, -1.0)}):
+        free = given.model_copy(update={"physics": Physics(gravity=None, **outside)})
+        guard_of(free)[0].check(pushed, state)
+
+
+def test_single_precision_may_round_more():
+    guard, state = guard_of(collision())
+    single = {name: values.astype(np.float32) for name, values in state.items()}
+    row = row_of(state)
+    shift = 1e3 * ROUNDINGS * np.finfo(float).eps * guard.momentum
+    pushed = {**row, "momentum": row["momentum"] + [0.0, shift, 0.0]}
+    guard.check(pushed, single)
+    assert stopped(guard, state, pushed).quantity.startswith("change of total momentum")
+
+
+def test_energy_may_be_lost_but_not_won():
+    given = collision()
+    guard, state = guard_of(given)
+    row = row_of(state)
+    kinetic = float(row["kinetic_energy"])
+    for change, passes in ((-0.9, True), (0.99 * ENERGY_GROWTH, True), (1.01 * ENERGY_GROWTH, False)):
+        now = {**row, "total_energy": row["total_energy"] + change * kinetic}
+        assert energy_growth(given, now, row) == pytest.approx(change, rel=1e-6)
+        if passes:
+            guard.check(now, state)
+        else:
+            assert stopped(guard, state, now).quantity.startswith("growth of total energy")
+
+
+def test_energy_that_gravity_gives_counts_as_there_from_the_start():
+    given = collision()
+    state = state_of(given)
+    start, fallen = row_of(state, gravity=-1e5), row_of(state, gravity=-9e5)
+    kinetic = float(start["kinetic_energy"])
+    assert energy_growth(given, fallen, start) == pytest.approx(-8e5 / (kinetic + 9e5))
+
+
+def test_matter_that_falls_along_a_periodic_axis_has_no_known_energy():
+    given = collision()
+    physics = Physics(gravity=None, uniform_gravity=(1.0, 0.0, 0.0))
+    sliding = given.model_copy(update={"physics": physics, "period": (4.0, None, None)})
+    guard, state = guard_of(sliding)
+    guard.check({**row_of(state), "total_energy": np.array(1e30)}, state)
+
+
+@pytest.mark.parametrize("dt", [0.0, np.nan, 1.99 / STEPS_FACTOR])
+def test_a_collapsed_time_step_names_the_wildest_particle(taichi, dt):
+    guard, state = guard_of(collision())
+    particles = Particles(COUNT)
+    particles.write(changed(state, "C", 1e3 * np.eye(3)))
+    guard.check_time_step(2.01 / STEPS_FACTOR, 5.0, particles)
+    with pytest.raises(GuardFault) as caught:
+        guard.check_time_step(dt, 5.0, particles)
+    assert (caught.value.fault.quantity, caught.value.fault.particle) == ("time step [s]", 7)
+
+
+def test_a_status_keeps_its_fault_in_parts_and_campaigns_show_it(tmp_path: Path) -> None:
+    fault = stop("speed [m/s]", np.inf, "at most 3", 1.5, 4).fault
+    JobDirectory(tmp_path).write_status(Status(state="failed", reason=str(fault), fault=fault))
+    assert JobDirectory(tmp_path).status().fault == fault
+    written = json.loads((tmp_path / "status.json").read_text())["fault"]
+    assert written == {**asdict(fault), "value": None}
+    shown = JobState(tmp_path, status_of(tmp_path))
+    assert shown.status.fault == fault and str(fault) in line(shown)
+
+
+def test_a_run_that_goes_bad_keeps_its_checkpoint(tmp_path: Path, taichi: None) -> None:
+    """A particle at a thousandth of the speed of light is stopped before anything is written over."""
+    job = JobDirectory(write_job(tmp_path / "job"))
+    given = Scene.model_validate_json((job.path / "scene.json").read_text())
+    simulation = Simulation(given)
+    simulation.start()
+    velocity = simulation.particles.read("v")["v"]
+    velocity[7] = [3e5, 0.0, 0.0]
+    simulation.particles.write({"v": velocity})
+    save_checkpoint(job, simulation, {"history_due": given.start_time, "snapshot_due": np.inf, "wall_time": 0.0})
+    before = job.checkpoint.read_bytes()
+    status = Run(given, job, Options(checkpoint_interval=0.0)).to_end()
+    assert status.state == "failed" and job.status().fault == status.fault
+    assert status.fault is not None and status.reason == str(status.fault)
+    assert job.checkpoint.read_bytes() == before and not job.previous_checkpoint.exists()
+    assert not job.final.exists()
