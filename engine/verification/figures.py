@@ -39,7 +39,7 @@ def _bar(problem: Bar) -> None:
     over_rate.loglog(rates, [Pull(rate).reference().max() for rate in rates], "-", label="NumPy, the same flaws")
     over_rate.loglog(rates, [Pull(rate).engine().max() for rate in rates], "o", label="engine")
     over_rate.set(xlabel="strain rate [1/s]", ylabel="peak stress [Pa]")
-    over_rate.legend()
+    over_rate.legend(loc="lower right")
     for rate in rates:
         bars = [Pull(rate, particles=count) for count in SIZES]
         spacing = [bar.body.spacing for bar in bars]
