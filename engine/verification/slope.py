@@ -136,9 +136,9 @@ class Slope:
 
     Friction grows with depth as weight does, so all depths yield at once, and only the transfer's damping of short
     waves decides how deep the layer shears: dv/dt = a - kappa d4v/dz4, kappa = dx^4/(42 dt) (engine/physics.md,
-    section 1). It spreads the jump of velocity at the base over l = (kappa t)^(1/4), proportional to dx^(3/4) t^(1/4), and
-    what the sheared part lags the plug gains. Another 1 % of the acceleration is the law's own: elastic shear strain raises the
-    normal stress over P by mu^2 P/G. Measurements are in engine/verification/granular.md.
+    section 1). It spreads the jump of velocity at the base over l = (kappa t)^(1/4), proportional to dx^(3/4)
+    t^(1/4), and what the sheared part lags the plug gains. Another 1 % of the acceleration is the law's own: elastic
+    shear strain raises the normal stress over P by mu^2 P/G. Measurements are in engine/verification/granular.md.
 
     The layer starts in balance, so the exact solution holds from the start. It is measured over several passes of a
     shear wave, sqrt(3)/c_l each, while the plug is thicker than what shears below it.
