@@ -1,0 +1,43 @@
+"""Run-out of collapsing columns of rubble in a plane (engine/physics.md, sections 4 and 11)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf
+
+from engine.verification.check import Check, difference
+from engine.verification.cliff import Cliff
+from engine.verification.drive import begin, follow
+
+EXPERIMENTS: dict[str, Callable[[float], float]] = {
+    "Lajeunesse 2005": lambda a: 1.8 * a if a < 3.0 else 2.3 * a ** (2.0 / 3.0),
+    "Lube 2005": lambda a: 1.2 * a if a < 2.3 else 1.9 * a ** (2.0 / 3.0),
+}
+"""Distance the front runs [L0] over the aspect ratio a = H0/L0: Lajeunesse et al. 2005, Lube et al. 2005."""
+
+
+@dataclass(frozen=True)
+class Runout:
+    """Columns of two heights, let go as the cliff is.
+
+    Reported only: the two experiments disagree by a factor of 1.2 to 1.5 with each other.
+
+    Attributes:
+        aspects: initial heights over the initial width.
+        cells: cells along the initial width.
+    """
+
+    name = "runout"
+    aspects: tuple[float, ...] = (1.0, 5.0)
+    cells: int = 10
+
+    def checks(self) -> list[Check]:
+        """Distance that the front has run at rest, beside both experiments."""
+        return [check for aspect in self.aspects for check in self._compare(aspect)]
+
+    def _compare(self, aspect: float) -> list[Check]:
+        column = Cliff(cells=self.cells, aspect=aspect)
+        front = column.front(follow(begin(column.scene), column.scene.end_time))
+        return [
+            difference(f"H0/L0 = {aspect:g}: run-out, {source}", "L0", front - 1.0, law(aspect), inf)
+            for source, law in EXPERIMENTS.items()
+        ]
