@@ -92,7 +92,7 @@ def measure(job: JobDirectory, particles: Particles) -> Numbers:
         | _interior(remnant)
         | {"time_after_contact": particles.time, "shape_change": change, "settled": is_settled(change)}
         | {f"drift_{name}": float(value) for name, value in last.data_vars.items()}
-        | {"steps": float(status.step), "wall_time": float(status.wall_time)}
+        | {"steps": float(status.step), "wall_time": status.wall_time, "cpu_time": status.cpu_time}
     )
 
 

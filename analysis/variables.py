@@ -89,6 +89,7 @@ OUTCOMES = {
     "drift_energy": Variable("change of the total energy", "1", f"{_DRIFT}the kinetic energy at the start"),
     "steps": Variable("time steps", "1"),
     "wall_time": Variable("computing time", "s"),
+    "cpu_time": Variable("processor time of all threads", "s"),
 }
 """Numbers of one job, in the order of results.nc."""
 

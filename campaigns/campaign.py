@@ -33,7 +33,7 @@ class Campaign(Frozen):
 
     name: name of the study.
     physics_version: the engine's, when the campaign was started.
-    dims: axes of the study, or `case`.
+    dims: `case`, where the study has cases, then its axes.
     coords: values along each dimension.
     """
 

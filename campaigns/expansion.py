@@ -1,6 +1,7 @@
 """From a study to its jobs."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
@@ -21,16 +22,16 @@ def expand(study: Study, source: str) -> Campaign:
     """All jobs of a study, each with its scene built once to see that it can be.
 
     Args:
-        study: axes or cases over shared settings.
+        study: axes, cases or both over shared settings.
         source: the file that errors name.
 
     Raises:
         SceneError: a key or value is wrong, or two jobs would be the same.
     """
-    if (study.axes is None) == (study.cases is None):
-        raise SceneError(f"{source}: give either [axes], for all combinations of values, or [[cases]], one table a job")
+    if study.axes is None and study.cases is None:
+        raise SceneError(f"{source}: give [axes], for all combinations of values, or [[cases]], one by one, or both")
     study.shared_settings(f"{source}: collision")
-    jobs = _grid_jobs(study, source) if study.axes is not None else _case_jobs(study, source)
+    jobs = list(_jobs(study, source))
     _refuse_equal_jobs(jobs, source)
     dims = tuple(jobs[0].index)
     coords = {dim: tuple(dict.fromkeys(job.index[dim] for job in jobs)) for dim in dims}
@@ -53,31 +54,52 @@ def scene_of(collision: Collision, source: str) -> Scene:
         raise SceneError(f"{source}: no scene can be built from velocity, radius and separation: {reason}") from error
 
 
-def _grid_jobs(study: Study, source: str) -> list[Job]:
-    axes = _axes(study.axes or {}, source)
-    jobs = []
-    for values in product(*axes.values()):
-        collision = study.collision_with(dict(zip(axes, values, strict=True)), source)
-        index = {key: value_at(collision, key) for key in axes}
-        jobs.append(_job(collision, alias(index), index, source))
-    return jobs
+@dataclass(frozen=True)
+class _Row:
+    """What the jobs of one case share; the only row of a study without cases has no place and no changes."""
+
+    place: dict[str, str]
+    changes: dict[str, Any]
+    source: str
 
 
-def _case_jobs(study: Study, source: str) -> list[Job]:
+def _jobs(study: Study, source: str) -> Iterator[Job]:
+    axes = {} if study.axes is None else _axes(study.axes, source)
+    for row in _rows(study, axes, source):
+        for values in product(*_kept(axes, row).values()):
+            collision = study.collision_with(row.changes | dict(zip(axes, values, strict=True)), row.source)
+            yield _job(collision, row.place, {key: value_at(collision, key) for key in axes}, row.source)
+
+
+def _rows(study: Study, axes: dict[str, Any], source: str) -> Iterator[_Row]:
+    if study.cases is None:
+        yield _Row({}, {}, source)
+        return
     if not study.cases:
         raise SceneError(f"{source}: 'cases' is empty; give at least one [[cases]] table")
-    jobs = []
     for number, case in enumerate(study.cases, start=1):
-        changes = flatten(case)
-        collision = study.collision_with(changes, f"{source}: case {number}")
-        label = alias({key: value_at(collision, key) for key in ordered(changes)})
-        jobs.append(_job(collision, label, {"case": label}, f"{source}: case {number}"))
-    return jobs
+        origin = f"{source}: case {number}"
+        first = {key: values[0] for key, values in axes.items()}
+        collision = study.collision_with(first | case.settings, origin)
+        name = case.name or alias({key: value_at(collision, key) for key in ordered(case.settings)})
+        yield _Row({"case": name}, case.settings, origin)
 
 
-def _job(collision: Collision, label: str, index: dict[str, Any], source: str) -> Job:
-    name = job_id(label, scene_of(collision, source).hash())
-    return Job(id=name, directory=f"jobs/{name}", index=index, collision=collision)
+def _kept(axes: dict[str, list[Any]], row: _Row) -> dict[str, list[Any]]:
+    """The values of each axis that a case is run at: all of them, or the one it sets itself."""
+    for key in axes.keys() & row.changes.keys():
+        if row.changes[key] not in axes[key]:
+            raise SceneError(
+                f"{row.source}: '{key}' is {row.changes[key]!r}, which 'axes.{key}' does not hold; "
+                "add it there, or leave it out to run the case at all values of the axis"
+            )
+    return {key: [row.changes[key]] if key in row.changes else values for key, values in axes.items()}
+
+
+def _job(collision: Collision, place: dict[str, str], index: dict[str, Any], source: str) -> Job:
+    parts = [*place.values(), *([alias(index)] if index else [])]
+    name = job_id("_".join(parts), scene_of(collision, source).hash())
+    return Job(id=name, directory=f"jobs/{name}", index={**place, **index}, collision=collision)
 
 
 def _axes(table: dict[str, Any], source: str) -> dict[str, list[Any]]:
@@ -113,14 +135,22 @@ def _require_values(key: str, values: Any, source: str) -> None:
 def _refuse_equal_jobs(jobs: list[Job], source: str) -> None:
     for first, second in _equal_pairs(jobs):
         given = " and ".join(", ".join(f"{key} {value}" for key, value in job.index.items()) for job in (first, second))
-        raise SceneError(f"{source}: {given} are the same simulation; keep one of them")
+        same = _scene_hash(first) == _scene_hash(second)
+        fault = (
+            "are the same simulation; keep one of them" if same else "are the same place; give cases different names"
+        )
+        raise SceneError(f"{source}: {given} {fault}")
+
+
+def _scene_hash(job: Job) -> str:
+    return job.id.rpartition("-")[2]
 
 
 def _equal_pairs(jobs: list[Job]) -> Iterator[tuple[Job, Job]]:
     """Jobs of the same scene, or of the same place in the results."""
     seen: dict[Any, Job] = {}
     for job in jobs:
-        for mark in (job.id.rpartition("-")[2], tuple(job.index.items())):
+        for mark in (_scene_hash(job), tuple(job.index.items())):
             if mark in seen:
                 yield seen[mark], job
             seen[mark] = job

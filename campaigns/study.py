@@ -3,14 +3,32 @@
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from campaigns.keys import flatten, nest
 from engine.collision import Collision
 from engine.errors import SceneError
 from engine.validation import Frozen, read_table, suggestion, validate
 
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)]
+
 SHIPPED = Path(__file__).parent / "studies"
+
+
+class Case(Frozen):
+    """One line of a study that is no grid: settings of the collision, and what to call it.
+
+    name: label in the results, instead of the settings in short.
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+    name: Name | None = None
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Dotted keys of the collision and their values."""
+        return flatten(self.model_extra or {})
 
 
 class Study(Frozen):
@@ -19,14 +37,15 @@ class Study(Frozen):
     name: name of the study and of its results directory.
     collision: settings of all collisions, keys as in engine.collision.Collision.
     axes: dotted key of the collision -> its values; every combination is a job.
-    cases: one table of settings for each job, where the jobs are no grid.
+    cases: one table of settings for each collision, where they are no grid; together with axes, every case is run for
+        every combination of the axes, or, where it sets a key of theirs itself, at that value only.
     """
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)]
+    name: Name
     description: str = ""
     collision: Annotated[dict[str, Any], Field(default_factory=dict)]
     axes: dict[str, Any] | None = None
-    cases: list[dict[str, Any]] | None = None
+    cases: list[Case] | None = None
 
     def collision_with(self, changes: dict[str, Any], source: str) -> Collision:
         """The collision of one job.

@@ -33,6 +33,7 @@ class Status:
         time, start_time, end_time: simulated time [s], now and at both ends.
         step: time steps done.
         wall_time: computing time [s] of all sessions of this job.
+        cpu_time: processor time [s] of all their threads.
         steps_per_second: recent rate [1/s].
         time_left: estimate of the computing time to the end [s].
         heartbeat: when this was written [s since the epoch].
@@ -47,6 +48,7 @@ class Status:
     end_time: float = 0.0
     step: int = 0
     wall_time: float = 0.0
+    cpu_time: float = 0.0
     steps_per_second: float = 0.0
     time_left: float = 0.0
     heartbeat: float = 0.0

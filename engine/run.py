@@ -71,6 +71,7 @@ class Run:
         if scene.output.snapshot_interval is None:
             self.snapshot_due = np.inf
         self.wall_before, self.begun = 0.0, time.monotonic()
+        self.cpu_before, self.cpu_begun = 0.0, time.process_time()
         self.saved = self.reported = time.monotonic()
         self.rate = 0.0
         self.stopping = False
@@ -109,6 +110,7 @@ class Run:
     def _restore(self, progress: dict[str, float]) -> None:
         self.history_due, self.snapshot_due = progress["history_due"], progress["snapshot_due"]
         self.wall_before = progress["wall_time"]
+        self.cpu_before = progress["cpu_time"]
         if self.job.history.exists():
             dataset = read_dataset(self.job.history)
             self.history = History.from_dataset(dataset.isel(time=dataset["step"] <= self.simulation.step))
@@ -190,11 +192,14 @@ class Run:
         self._check(self._row())
         self._write_history()
         due = {"history_due": self.history_due, "snapshot_due": self.snapshot_due, "wall_time": self._wall_time()}
-        save_checkpoint(self.job, self.simulation, due)
+        save_checkpoint(self.job, self.simulation, {**due, "cpu_time": self._cpu_time()})
         self.saved = time.monotonic()
 
     def _wall_time(self) -> float:
         return self.wall_before + time.monotonic() - self.begun
+
+    def _cpu_time(self) -> float:
+        return self.cpu_before + time.process_time() - self.cpu_begun
 
     def _report(self, state: str, reason: str = "", fault: Fault | None = None) -> Status:
         simulation, scene = self.simulation, self.scene
@@ -208,6 +213,7 @@ class Run:
             end_time=scene.end_time,
             step=simulation.step,
             wall_time=self._wall_time(),
+            cpu_time=self._cpu_time(),
             steps_per_second=self.rate,
             time_left=left / self.rate if self.rate > 0.0 and state == "running" else 0.0,
         )

@@ -75,7 +75,7 @@ def write_job(
     path.mkdir(parents=True)
     job = JobDirectory(path)
     write_json(path / "scene.json", collision.scene().model_dump(mode="json"))
-    job.write_status(Status(state=state, reason=reason, step=100, wall_time=12.5))
+    job.write_status(Status(state=state, reason=reason, step=100, wall_time=12.5, cpu_time=20.5))
     write_dataset(job.history, history(np.linspace(-500.0, collision.end_time, 20), 1e-9))
     if final is not None:
         write_dataset(job.final, final)

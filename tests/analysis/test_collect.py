@@ -60,7 +60,8 @@ def test_a_done_job_is_measured(tmp_path: Path) -> None:
     np.testing.assert_allclose(cell["spin_period"], 2.0 * np.pi / 3e-4, rtol=1e-6)
     np.testing.assert_allclose(cell["bulk_density"], RHO0, rtol=0.03)
     assert cell["clumps"] == 2.0 and cell["damaged_fraction"] == 1.0 and cell["J_p50"] == 1.0
-    assert cell["steps"] == 100.0 and cell["wall_time"] == 12.5 and cell["time_after_contact"] == 900.0
+    assert cell["steps"] == 100.0 and cell["wall_time"] == 12.5 and cell["cpu_time"] == 20.5
+    assert cell["time_after_contact"] == 900.0
     assert cell["largest_thin"] == 0.0 and np.isnan(cell["settled"])
 
 

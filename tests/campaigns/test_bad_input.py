@@ -47,11 +47,17 @@ BAD_STUDIES = {
     ),
     "table as axis": (HEAD + "[axes]\nvelocity = [100]\nangle = [5]\nviscosity = [1]\n", ["table", "viscosity.shear"]),
     "lists as values": (HEAD + "[axes]\nvelocity = [[100]]\nangle = [5]\n", ["axes.velocity", "single values"]),
-    "axes and cases": (
-        HEAD + GRID + "[[cases]]\nvelocity = 100\nangle = 5\n",
-        ["either [axes]", "or [[cases]]"],
+    "case off the axes": (HEAD + GRID + "[[cases]]\nangle = 7\n", ["case 1", "'angle' is 7", "axes.angle"]),
+    "case without effect beside axes": (
+        HEAD + GRID + "[[cases]]\n[[cases]]\nradius = 5e4\n",
+        ["case base, velocity 100.0", "case radius50000, velocity 100.0", "same simulation"],
     ),
-    "neither axes nor cases": (HEAD, ["either [axes]", "or [[cases]]"]),
+    "cases of the same name": (
+        HEAD + GRID + "[[cases]]\nname = 'a'\n[[cases]]\nname = 'a'\nradius = 1e4\n",
+        ["case a, velocity 100.0", "same place", "different names"],
+    ),
+    "name of a case that leaves the directory": (HEAD + GRID + "[[cases]]\nname = '../up'\n", ["name", "../up"]),
+    "neither axes nor cases": (HEAD, ["give [axes]", "or [[cases]]"]),
     "empty cases": (HEAD + "cases = []\n", ["'cases' is empty"]),
     "misspelt case": (HEAD + "[[cases]]\nvelocity = 100\nangel = 5\n", ["case 1", "did you mean 'angle'"]),
     "repeated case": (

@@ -96,6 +96,33 @@ def test_case_names_do_not_depend_on_other_cases():
     assert both.coords["case"] == ("v0100_a05", "v0100_a05_end_time10")
 
 
+def test_every_case_is_run_for_every_combination_of_the_axes():
+    cases = [{}, {"name": "fine", "particles": 40000}]
+    campaign = expand(Study(name="n", axes={"velocity": [1, 2], "angle": [5], "seed": [1, 2]}, cases=cases), "test")
+    assert campaign.dims == ("case", "velocity", "angle", "seed")
+    assert campaign.coords["case"] == ("base", "fine")
+    assert len(campaign.jobs) == 8
+    assert campaign.jobs[-1].id.startswith("fine_v0002_a05_seed2-")
+    assert campaign.jobs[-1].collision.particles == 40000
+    assert ids(grid(velocity=[1, 2], angle=[5], seed=[1, 2])) != ids(campaign)
+    assert {job.id[-8:] for job in campaign.jobs[:4]} == {j.id[-8:] for j in grid(velocity=[1, 2], angle=[5]).jobs} | {
+        job.id[-8:] for job in grid(velocity=[1, 2], angle=[5], seed=[2]).jobs
+    }
+
+
+def test_a_case_that_sets_an_axis_is_run_at_that_value_only():
+    cases = [{}, {"particles": 40000, "seed": 2}]
+    campaign = expand(
+        Study(name="n", collision={"velocity": 1, "angle": 5}, axes={"seed": [1, 2]}, cases=cases), "test"
+    )
+    assert [tuple(job.index.values()) for job in campaign.jobs] == [
+        ("base", 1),
+        ("base", 2),
+        ("particles40000_seed2", 2),
+    ]
+    assert validate(Campaign, campaign.content(), "test") == campaign
+
+
 def test_expansion_leaves_the_study_as_it_is():
     study = Study(name="n", collision={"viscosity": {}}, axes={"velocity": [1], "angle": [5], "viscosity.bulk": [1]})
     before = study.model_dump()

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from engine.jobdir import JobDirectory
-from engine.storage import read_dataset
+from engine.storage import read_dataset, write_dataset
 from tests.engine.jobs import assert_same, assert_same_results, engine_command, run_engine, write_job
 
 
@@ -56,6 +56,17 @@ def test_a_terminated_run_saves_and_resumes_to_the_same_bits(tmp_path: Path, ref
     assert start_and_stop(directory, signal.SIGTERM) == 130
     assert run_engine(directory, "--checkpoint-interval", "0").returncode == 0
     assert_same_results(directory, reference)
+
+
+def test_computing_times_add_up_over_sessions(tmp_path: Path) -> None:
+    directory = write_job(tmp_path / "job")
+    start_and_stop(directory, signal.SIGTERM)
+    job = JobDirectory(directory)
+    earlier = {"wall_time": 2e6, "cpu_time": 1e6}
+    write_dataset(job.checkpoint, read_dataset(job.checkpoint).assign_attrs(earlier))
+    assert run_engine(directory).returncode == 0
+    status = job.status()
+    assert 2e6 < status.wall_time < 3e6 and 1e6 < status.cpu_time < 2e6
 
 
 def test_two_threads_give_the_same_bits_as_one(tmp_path: Path, reference: Path) -> None:
