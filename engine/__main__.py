@@ -60,6 +60,7 @@ def run(
 def verify(
     names: Annotated[list[str] | None, typer.Argument(help="Problems to run; all if none is named.")] = None,
     full: Annotated[bool, typer.Option("--full", help="Fine resolutions: minutes instead of seconds each.")] = False,
+    csv: Annotated[Path | None, typer.Option(help="File for the table, all digits.")] = None,
     figures: Annotated[Path | None, typer.Option(help="Directory for figures of the problems that have one.")] = None,
     threads: Annotated[int, typer.Option(min=1, help="CPU threads.")] = os.cpu_count() or 1,
     arch: Annotated[Arch, typer.Option(help="Device.")] = Arch.CPU,
@@ -70,7 +71,7 @@ def verify(
     """
     from engine.verification.catalogue import FULL, SHORT
     from engine.verification.figures import draw
-    from engine.verification.report import run_all, table
+    from engine.verification.report import frame, run_all, table
 
     known = FULL if full else SHORT
     for name in set(names or ()) - set(known):
@@ -81,6 +82,8 @@ def verify(
         for result in run_all(chosen, arch.value, threads):
             results.append(result)
             spinner.update(f"{len(results)} of {len(chosen)} done, {result.name} last")
+        if csv:
+            frame(results).to_csv(csv, index=False)
         if figures:
             draw(chosen, figures)
     Console(width=max(Console().width, TABLE_WIDTH)).print(table(results))

@@ -2,9 +2,10 @@
 
 import time
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import inf
 
+import pandas as pd
 from rich.table import Table
 
 from engine import backend
@@ -59,6 +60,17 @@ def table(results: Iterable[Result]) -> Table:
             result_table.add_row(*row)
         result_table.add_section()
     return result_table
+
+
+def frame(results: Iterable[Result]) -> pd.DataFrame:
+    """One row per comparison; a problem that broke off has none."""
+    return pd.DataFrame(
+        [
+            {"scene": result.name, **asdict(check), "passed": check.passed, "wall_time": result.wall_time}
+            for result in results
+            for check in result.checks
+        ]
+    )
 
 
 def _rows(result: Result) -> Iterator[list[str]]:
