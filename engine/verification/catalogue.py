@@ -11,7 +11,9 @@ from engine.verification.hydrostatic import Hydrostatic
 from engine.verification.orbit import Infall
 from engine.verification.rotation import Rotation
 from engine.verification.rubble import Rubble
+from engine.verification.runout import Runout
 from engine.verification.slope import Slope
+from engine.verification.stiffness import Stiffness
 
 SHORT: dict[str, Problem] = {
     problem.name: problem
@@ -38,4 +40,7 @@ FULL: dict[str, Problem] = {
     "collapse": Collapse(particles=(2000, 16000)),
     "cliff": Cliff(cells=15),
     "rubble": Rubble(particles=1500),
+    "slope": Slope(cells=(48, 96)),
+    "stiffness": Stiffness(),
+    "runout": Runout(),
 }

@@ -14,14 +14,16 @@ from engine.validation import validate
 from engine.verification.bar import Bar, Pull
 from engine.verification.catalogue import FULL, SHORT
 from engine.verification.check import Problem, difference, share
+from engine.verification.cliff import Cliff
 from engine.verification.collapse import Fall
 from engine.verification.column import Column
-from engine.verification.drive import begin, fitted_order, follow
+from engine.verification.drive import Moment, begin, fitted_order, follow
 from engine.verification.expansion import Expansion
 from engine.verification.hugoniot import Hugoniot, Shock
 from engine.verification.hydrostatic import Hydrostatic
 from engine.verification.rotation import Rotation
 from engine.verification.rubble import Rubble
+from engine.verification.stiffness import apart
 
 HUGONIOT = {  # up: Us [m/s], P [GPa], rho/rho0 of Tillotson's basalt, strengthless
     25.0: (3182.2, 0.2148, 1.00792),
@@ -66,6 +68,26 @@ def test_problems_are_solved(name):
 @pytest.mark.parametrize("name", [name for name in FULL if FULL[name] != SHORT.get(name)])
 def test_fine_problems_are_solved(name):
     assert_solved(FULL[name])
+
+
+def test_profiles_hold_the_area_of_the_rubble_and_are_flat_where_it_is():
+    cliff = Cliff()
+    block = initial_state(cliff.scene)
+    L, H = cliff.profile(Moment(0.0, block))
+    assert H.sum() * (L[1] - L[0]) == pytest.approx(cliff.aspect, rel=1e-12)
+    # two strips from the free face
+    np.testing.assert_allclose(H[:8], cliff.aspect, rtol=1e-12)
+    generator = np.random.default_rng(1)
+    strewn = {"x": generator.uniform(0.0, 5.0, (1000, 3)), "j": generator.uniform(0.0, 1.0, 1000)}
+    L, H = cliff.profile(Moment(0.0, strewn))
+    area = (1.0 + strewn["j"]).sum() * cliff.scene.bodies[0].spacing ** 3 / cliff.scene.period[1]
+    assert H.sum() * (L[1] - L[0]) == pytest.approx(area, rel=1e-12)
+
+
+def test_profiles_are_compared_up_to_the_farther_front():
+    long, short = np.array([2.0, 1.0, 0.5, 0.0]), np.array([2.0, 1.3])
+    assert apart(long, short) == apart(short, long) == pytest.approx(np.sqrt((0.3**2 + 0.5**2) / 3.0))
+    assert apart(long, long) == 0.0
 
 
 @pytest.mark.parametrize("up", list(HUGONIOT))

@@ -1,0 +1,62 @@
+"""Whether a granular flow depends on the speed of sound it is given (engine/physics.md, sections 4 and 11)."""
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from engine.verification.check import Check, difference
+from engine.verification.cliff import THIN, Cliff
+from engine.verification.drive import Array, Moment, settings
+
+SCATTER = 0.05
+"""RMS of H [L0] between cliffs at rest, 10 cells, whose particles are displaced by 0.1 dx at random: 0.034 to 0.048."""
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """The cliff with c_l = 20 sqrt(g H0) and with twice that; rock is stiffer by far, and a step for it shorter.
+
+    A doubled speed halves the time step, and the transfer damps by the step (engine/physics.md, section 1). So the
+    stiff cliff is compared with the soft one at the same cfl, and at the same step, where stiffness alone differs.
+
+    Attributes:
+        cells: cells along the initial width.
+        cfl: time step of the stiff cliff; the soft one has it too, and half of it.
+    """
+
+    name = "stiffness"
+    cells: int = 10
+    cfl: float = 0.5
+
+    def checks(self) -> list[Check]:
+        """Change of the profile, within the scatter of disturbed particles, and of the front, which is reported."""
+        soft, stiff = Cliff(self.cells), Cliff(self.cells, stiffness=2.0 * Cliff.stiffness)
+        after, before = self._run(stiff, self.cfl), self._run(soft, self.cfl)
+        same_step = self._run(soft, 0.5 * self.cfl)
+        return [
+            *_changes("same cfl", soft, before, after),
+            *_changes("same step", soft, same_step, after),
+        ]
+
+    def _run(self, cliff: Cliff, cfl: float) -> dict[str, Moment]:
+        with settings({"numerics.cfl": cfl}):
+            return cliff.run()
+
+
+def _changes(what: str, cliff: Cliff, before: dict[str, Moment], after: dict[str, Moment]) -> list[Check]:
+    checks = []
+    for when in before:
+        change = apart(cliff.profile(before[when])[1], cliff.profile(after[when])[1])
+        fronts = cliff.front(after[when]), cliff.front(before[when])
+        checks.append(difference(f"{when}, {what}: RMS change of H", "L0", change, 0.0, SCATTER))
+        checks.append(difference(f"{when}, {what}: front", "L0", *fronts, inf))
+    return checks
+
+
+def apart(one: Array, other: Array) -> float:
+    """RMS difference [L0] of two profiles, up to the farther front."""
+    length = max(len(one), len(other))
+    padded = np.stack([np.pad(H, (0, length - len(H))) for H in (one, other)])
+    covered = padded[:, (padded > THIN).any(axis=0)]
+    return float(np.sqrt(np.mean((covered[0] - covered[1]) ** 2)))
