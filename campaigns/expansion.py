@@ -81,7 +81,7 @@ def _rows(study: Study, axes: dict[str, Any], source: str) -> Iterator[_Row]:
         origin = f"{source}: case {number}"
         first = {key: values[0] for key, values in axes.items()}
         collision = study.collision_with(first | case.settings, origin)
-        name = case.name or alias({key: value_at(collision, key) for key in ordered(case.settings)})
+        name = case.name or alias({key: value_at(collision, key) for key in ordered(case.settings) if key not in axes})
         yield _Row({"case": name}, case.settings, origin)
 
 
