@@ -123,6 +123,23 @@ def test_a_case_that_sets_an_axis_is_run_at_that_value_only():
     assert validate(Campaign, campaign.content(), "test") == campaign
 
 
+def test_error_bars_run_every_cell_at_two_resolutions_with_all_seeds():
+    bars = {"coarser": 0.3, "seeds": [4, 2]}
+    study = Study(name="n", collision={"particles": 1000}, axes={"velocity": [1, 2], "angle": [5]}, error_bars=bars)
+    campaign = expand(study, "test")
+    assert campaign.dims == ("velocity", "angle", "resolution", "seed")
+    assert campaign.coords["resolution"] == ("coarse", "fine") and campaign.coords["seed"] == (4, 2)
+    assert [(job.collision.particles, job.collision.seed) for job in campaign.jobs] == [
+        (300, 4),
+        (300, 2),
+        (1000, 4),
+        (1000, 2),
+    ] * 2
+    assert validate(Campaign, campaign.content(), "test") == campaign
+    plain = grid(velocity=[1, 2], angle=[5], seed=[4], particles=[1000])
+    assert {job.id[-8:] for job in plain.jobs} < {job.id[-8:] for job in campaign.jobs}
+
+
 def test_expansion_leaves_the_study_as_it_is():
     study = Study(name="n", collision={"viscosity": {}}, axes={"velocity": [1], "angle": [5], "viscosity.bulk": [1]})
     before = study.model_dump()
