@@ -7,7 +7,7 @@ import typer
 
 from analysis.plots import plots as draw
 from analysis.remnant import latest, measure
-from analysis.tables import printed, reasons, shape_table
+from analysis.tables import printed, reasons, shape_table, unresolved
 from analysis.variables import OUTCOMES
 from engine.errors import JobError, RunFault, SceneError
 from engine.jobdir import JobDirectory
@@ -20,7 +20,7 @@ def plots(campaign: Path) -> None:
     """Collect a campaign, print its table of shapes, and draw its figures."""
     results, written = draw(campaign)
     typer.echo(printed(shape_table(results)))
-    for line in reasons(results):
+    for line in [*unresolved(results), *reasons(results)]:
         typer.echo(line)
     if not (results["state"] == "done").any():
         typer.echo("no job of this campaign is done yet: table and figures show states only")

@@ -56,6 +56,11 @@ class Campaign(BaseModel):
         return tuple(self.coords[dim].index(job.index[dim]) for dim in self.dims)
 
     @property
+    def has_error_bars(self) -> bool:
+        """Whether each cell of its results is made of several jobs."""
+        return "resolution" in self.dims
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """Length of each dimension."""
         return tuple(len(self.coords[dim]) for dim in self.dims)

@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from analysis.campaign import NONE, Campaign, Scalar, plain, read_campaign
+from analysis.error_bars import combine
 from analysis.remnant import Outcome, outcome
 from analysis.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
 from engine.jobdir import JobDirectory
@@ -21,6 +22,7 @@ ALWAYS = ("velocity", "angle", "end_time")
 def collect(campaign_directory: Path) -> xr.Dataset:
     """Measure every job, write results.nc into the campaign directory and return it.
 
+    With error bars the jobs are in members.nc, and results.nc holds what they say together (analysis.error_bars).
     Cells without an outcome are NaN and carry the state of their job. Parameters in which jobs differ are
     coordinates; those all jobs share are attributes.
 
@@ -32,6 +34,9 @@ def collect(campaign_directory: Path) -> xr.Dataset:
         outcome(JobDirectory(campaign_directory / job.directory), campaign.physics_version) for job in campaign.jobs
     ]
     results = assemble(campaign, outcomes)
+    if campaign.has_error_bars:
+        write_dataset(campaign_directory / "members.nc", results)
+        results = combine(results)
     write_dataset(campaign_directory / "results.nc", results)
     return results
 

@@ -23,6 +23,7 @@ HEADINGS = {
     "largest_thin": "thin",
     "settled": "settled",
     "time_after_contact": "t [s]",
+    "members": "members",
     "state": "state",
 }
 """Columns of the printed table."""
@@ -51,8 +52,9 @@ def series(results: xr.Dataset) -> Iterator[tuple[str, pd.DataFrame]]:
 
 
 def shape_table(results: xr.Dataset) -> pd.DataFrame:
-    """The table of shape against angle: dimensions, velocity, angle, and the outcomes in `HEADINGS`."""
-    names = dict.fromkeys([*(str(dim) for dim in results.dims), *HEADINGS])
+    """The table of shape against angle: dimensions, velocity, angle, and the outcomes in `HEADINGS`, with errors."""
+    errors = [name for heading in HEADINGS for name in (heading, f"{heading}_error") if name in results]
+    names = dict.fromkeys([*(str(dim) for dim in results.dims), *errors])
     return cells(results)[list(names)]
 
 
@@ -63,10 +65,35 @@ def write_shape_table(results: xr.Dataset, path: Path) -> None:
 
 
 def printed(table: pd.DataFrame) -> str:
-    """The table for people: short headings, few digits, a dash for what is not there."""
-    shown = table.assign(spin_period=table["spin_period"] / 3600.0).rename(columns=HEADINGS)
+    """The table for people: short headings, few digits, value +- error, a dash for what is not there."""
+    hours = {name: table[name] / 3600.0 for name in ("spin_period", "spin_period_error") if name in table}
+    shown = _with_errors(table.assign(**hours)).rename(columns=HEADINGS)
     formatters = {name: partial(_text, decimals=DECIMALS.get(name)) for name in shown.columns}
     return shown.to_string(index=False, formatters=formatters, na_rep="-")
+
+
+def _with_errors(table: pd.DataFrame) -> pd.DataFrame:
+    """Each column that has an error as text, value +- error."""
+    for error in [name for name in table.columns if name.endswith("_error")]:
+        name = error.removesuffix("_error")
+        decimals = DECIMALS.get(HEADINGS[name])
+        pairs = zip(table[name], table[error], strict=True)
+        texts = [_text(value, decimals) + f" +- {_text(bar, decimals)}" * (value == value) for value, bar in pairs]
+        table = table.assign(**{name: texts}).drop(columns=error)
+    return table
+
+
+def unresolved(results: xr.Dataset) -> list[str]:
+    """One line a cell that names the outcomes of the table whose change with resolution drowns in that of the seeds."""
+    names = [name for name in HEADINGS if f"{name}_resolved" in results]
+    table = cells(results)
+    lines = []
+    for _, row in table.iterrows():
+        drowned = [HEADINGS[name] for name in names if row[f"{name}_resolved"] == 0.0]
+        if drowned:
+            place = ", ".join(f"{dim} {_text(row[dim])}" for dim in map(str, results.dims))
+            lines.append(f"{place}: resolution changes nothing beyond the spread of the seeds: {', '.join(drowned)}")
+    return lines
 
 
 def reasons(results: xr.Dataset) -> list[str]:

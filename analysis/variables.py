@@ -93,6 +93,12 @@ OUTCOMES = {
 }
 """Numbers of one job, in the order of results.nc."""
 
+WITHOUT_ERROR = ("largest_thin", "settled", "time_after_contact")
+"""Outcomes that are no measured numbers."""
+
+COSTS = ("steps", "wall_time", "cpu_time")
+"""Outcomes that add up over the runs of a cell."""
+
 TEXTS = {
     "state": Variable(
         "state of the job", "", "done, running, pending, interrupted, failed, corrupt, or missing without a job"

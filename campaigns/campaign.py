@@ -33,7 +33,7 @@ class Campaign(Frozen):
 
     name: name of the study.
     physics_version: the engine's, when the campaign was started.
-    dims: `case`, where the study has cases, then its axes.
+    dims: `case`, where the study has cases, its axes, and, where it has error bars, `resolution` and `seed`.
     coords: values along each dimension.
     """
 

@@ -1,6 +1,6 @@
 """From a study to its jobs."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -31,6 +31,7 @@ def expand(study: Study, source: str) -> Campaign:
     if study.axes is None and study.cases is None:
         raise SceneError(f"{source}: give [axes], for all combinations of values, or [[cases]], one by one, or both")
     study.shared_settings(f"{source}: collision")
+    _refuse_second_seeds(study, source)
     jobs = list(_jobs(study, source))
     _refuse_equal_jobs(jobs, source)
     dims = tuple(jobs[0].index)
@@ -68,7 +69,14 @@ def _jobs(study: Study, source: str) -> Iterator[Job]:
     for row in _rows(study, axes, source):
         for values in product(*_kept(axes, row).values()):
             collision = study.collision_with(row.changes | dict(zip(axes, values, strict=True)), row.source)
-            yield _job(collision, row.place, {key: value_at(collision, key) for key in axes}, row.source)
+            index = {key: value_at(collision, key) for key in axes}
+            for place, member in _members(study, collision):
+                yield _job(member, row.place, {**index, **place}, row.source)
+
+
+def _members(study: Study, collision: Collision) -> Iterable[tuple[dict[str, Any], Collision]]:
+    """The runs of one cell with their place in it."""
+    return study.error_bars.members(collision) if study.error_bars else [({}, collision)]
 
 
 def _rows(study: Study, axes: dict[str, Any], source: str) -> Iterator[_Row]:
@@ -81,7 +89,7 @@ def _rows(study: Study, axes: dict[str, Any], source: str) -> Iterator[_Row]:
         origin = f"{source}: case {number}"
         first = {key: values[0] for key, values in axes.items()}
         collision = study.collision_with(first | case.settings, origin)
-        name = case.name or alias({key: value_at(collision, key) for key in ordered(case.settings)})
+        name = case.name or alias({key: value_at(collision, key) for key in ordered(case.settings) if key not in axes})
         yield _Row({"case": name}, case.settings, origin)
 
 
@@ -111,6 +119,15 @@ def _axes(table: dict[str, Any], source: str) -> dict[str, list[Any]]:
         _require_scalar_key(key, source)
         _require_values(key, values, source)
     return {key: axes[key] for key in ordered(axes)}
+
+
+def _refuse_second_seeds(study: Study, source: str) -> None:
+    """With error bars, seeds are theirs to choose."""
+    given = {"collision": study.collision, "axes": flatten(study.axes or {})}
+    given |= {f"case {number}": case.settings for number, case in enumerate(study.cases or [], start=1)}
+    for place, settings in given.items():
+        if study.error_bars and "seed" in settings:
+            raise SceneError(f"{source}: {place}: 'seed' is chosen by error_bars.seeds; leave it out here")
 
 
 def _require_scalar_key(key: str, source: str) -> None:

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field
 
 from campaigns.keys import flatten, nest
+from campaigns.members import ErrorBars
 from engine.collision import Collision
 from engine.errors import SceneError
 from engine.validation import Frozen, read_table, suggestion, validate
@@ -39,6 +40,7 @@ class Study(Frozen):
     axes: dotted key of the collision -> its values; every combination is a job.
     cases: one table of settings for each collision, where they are no grid; together with axes, every case is run for
         every combination of the axes, or, where it sets a key of theirs itself, at that value only.
+    error_bars: run each of these collisions at two resolutions and with several seeds.
     """
 
     name: Name
@@ -46,6 +48,7 @@ class Study(Frozen):
     collision: Annotated[dict[str, Any], Field(default_factory=dict)]
     axes: dict[str, Any] | None = None
     cases: list[Case] | None = None
+    error_bars: ErrorBars | None = None
 
     def collision_with(self, changes: dict[str, Any], source: str) -> Collision:
         """The collision of one job.

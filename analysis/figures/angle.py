@@ -21,7 +21,10 @@ PANELS = {"b_over_a": "$b/a$", "c_over_a": "$c/a$"}
 
 
 def shape_versus_angle(results: xr.Dataset) -> Any:
-    """b/a and c/a against angle, mean and standard deviation over seeds; thin remnants hollow."""
+    """b/a and c/a against angle, thin remnants hollow.
+
+    Bars are the errors of a study with error bars, else, over an axis of seeds, the standard deviation of one run.
+    """
     if not (results["state"] == "done").any():
         return nothing_done()
     figure, panels = plt.subplots(1, 2, figsize=(7.8, 3.5), sharey=True, layout="constrained")
@@ -53,9 +56,10 @@ def _lines(results: xr.Dataset) -> Iterator[tuple[str, tuple[Look, pd.DataFrame]
 
 
 def _line(axes: Any, rows: pd.DataFrame, name: str, look: Look) -> None:
-    found = rows.groupby("angle").agg(mean=(name, "mean"), spread=(name, "std"), thin=("largest_thin", "max"))
-    spread = found["spread"].fillna(0.0)
-    axes.errorbar(found.index, found["mean"], spread, capsize=2.5, elinewidth=0.9, markeredgewidth=1.2, **look)
+    spread = (f"{name}_error", "mean") if f"{name}_error" in rows else (name, "std")
+    found = rows.groupby("angle").agg(mean=(name, "mean"), spread=spread, thin=("largest_thin", "max"))
+    bars = found["spread"].fillna(0.0)
+    axes.errorbar(found.index, found["mean"], bars, capsize=2.5, elinewidth=0.9, markeredgewidth=1.2, **look)
     thin = found[found["thin"] > 0.0]
     hollow = look | {"linestyle": "none", "markerfacecolor": "white", "zorder": 5}
     axes.plot(thin.index, thin["mean"], markeredgewidth=1.2, **hollow)

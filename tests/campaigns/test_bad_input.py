@@ -64,6 +64,22 @@ BAD_STUDIES = {
         HEAD + "[collision]\nangle = 5\n[[cases]]\nvelocity = 100\n[[cases]]\nvelocity = 100.0\nangle = 5.0\n",
         ["same simulation"],
     ),
+    "misspelt error bars": (HEAD + GRID + "[error_bars]\nseed = [1, 2]\n", ["error_bars.seed", "mean 'seeds'"]),
+    "one seed": (HEAD + GRID + "[error_bars]\nseeds = [1]\n", ["error_bars.seeds", "at least 2"]),
+    "equal seeds": (HEAD + GRID + "[error_bars]\nseeds = [1, 1]\n", ["error_bars", "twice"]),
+    "second resolution as fine": (HEAD + GRID + "[error_bars]\ncoarser = 1.0\nseeds = [1, 2]\n", ["coarser", "1"]),
+    "second resolution of as many particles": (
+        HEAD + "[collision]\nparticles = 1\n" + GRID + "[error_bars]\nseeds = [1, 2]\n",
+        ["resolution coarse", "resolution fine", "same simulation"],
+    ),
+    "seeds as an axis beside error bars": (
+        HEAD + GRID + "seed = [1, 2]\n[error_bars]\nseeds = [1, 2]\n",
+        ["axes: 'seed'", "error_bars.seeds"],
+    ),
+    "seed of a case beside error bars": (
+        HEAD + "[error_bars]\nseeds = [1, 2]\n[[cases]]\nvelocity = 1\nangle = 5\nseed = 3\n",
+        ["case 1: 'seed'", "error_bars.seeds"],
+    ),
     "no TOML": ("name = small", ["not valid TOML"]),
     "no text": ("name = '\x00'", ["not valid TOML"]),
 }

@@ -118,9 +118,26 @@ def test_a_case_that_sets_an_axis_is_run_at_that_value_only():
     assert [tuple(job.index.values()) for job in campaign.jobs] == [
         ("base", 1),
         ("base", 2),
-        ("particles40000_seed2", 2),
+        ("particles40000", 2),
     ]
     assert validate(Campaign, campaign.content(), "test") == campaign
+
+
+def test_error_bars_run_every_cell_at_two_resolutions_with_all_seeds():
+    bars = {"coarser": 0.3, "seeds": [4, 2]}
+    study = Study(name="n", collision={"particles": 1000}, axes={"velocity": [1, 2], "angle": [5]}, error_bars=bars)
+    campaign = expand(study, "test")
+    assert campaign.dims == ("velocity", "angle", "resolution", "seed")
+    assert campaign.coords["resolution"] == ("coarse", "fine") and campaign.coords["seed"] == (4, 2)
+    assert [(job.collision.particles, job.collision.seed) for job in campaign.jobs] == [
+        (300, 4),
+        (300, 2),
+        (1000, 4),
+        (1000, 2),
+    ] * 2
+    assert validate(Campaign, campaign.content(), "test") == campaign
+    plain = grid(velocity=[1, 2], angle=[5], seed=[4], particles=[1000])
+    assert {job.id[-8:] for job in plain.jobs} < {job.id[-8:] for job in campaign.jobs}
 
 
 def test_expansion_leaves_the_study_as_it_is():
@@ -130,7 +147,7 @@ def test_expansion_leaves_the_study_as_it_is():
     assert study.model_dump() == before
 
 
-@pytest.mark.parametrize(("name", "jobs"), [("quick", 9), ("sugiura2018", 72), ("talk2025", 3)])
+@pytest.mark.parametrize(("name", "jobs"), [("accuracy", 86), ("quick", 9), ("sugiura2018", 72), ("talk2025", 3)])
 def test_shipped_studies(name, jobs):
     campaign = expand(read_study(find_study(name)), name)
     assert campaign.name == name
@@ -139,7 +156,7 @@ def test_shipped_studies(name, jobs):
 
 
 def test_all_shipped_studies_are_known_here():
-    assert {path.stem for path in SHIPPED.iterdir()} == {"quick", "sugiura2018", "talk2025"}
+    assert {path.stem for path in SHIPPED.iterdir()} == {"accuracy", "quick", "sugiura2018", "talk2025"}
 
 
 def test_talk_cases_end_at_their_own_times():

@@ -68,6 +68,14 @@ def test_new_axis_keeps_finished_jobs(command, write_study, runs):
     assert len(list(runs.glob("small/jobs/*"))) == 4
 
 
+def test_error_bars_keep_finished_jobs(command, write_study, runs):
+    command("run", write_study(velocity="[100]"))
+    command("run", write_study(velocity="[100]", angle="[5]\n[error_bars]\nseeds = [1, 2]"))
+    assert starts(runs, "v0100_a05") == ["from step 0"]
+    assert len(list(runs.glob("small/jobs/*"))) == 4
+    assert len(list(runs.glob("small/jobs/v0100_a05_resolution-coarse_seed*/final.nc"))) == 2
+
+
 def test_jobs_that_left_the_study_stay(command, write_study, runs):
     command("run", write_study())
     command("run", write_study(velocity="[100]"))

@@ -1,0 +1,78 @@
+"""Cells of a study with error bars: the mean of their members, and how far it can be trusted."""
+
+import numpy as np
+import xarray as xr
+
+from analysis.statistics import resolved, standard_error
+from analysis.variables import COSTS, OUTCOMES, WITHOUT_ERROR
+
+MEMBERS = ("resolution", "seed")
+"""Dimensions of the members of one cell."""
+
+_NOT_DONE = ("corrupt", "failed", "running", "interrupted", "pending", "missing")
+"""States of a member that keep a cell from being done; the first is the cell's."""
+
+_ERROR = (
+    "standard error over seeds and difference of the means of both resolutions, in quadrature; NaN if one is unknown"
+)
+_RESOLVED = "1 where it exceeds the 95 % confidence interval that the seeds leave it, 0 where not"
+
+
+def combine(members: xr.Dataset) -> xr.Dataset:
+    """One value a cell: the mean over the seeds of the finer resolution, its error, and the number of members.
+
+    `<variable>_error` adds, in quadrature, the standard error of that mean and its difference to the mean of the
+    coarser resolution; it is NaN while one of them is unknown. `<variable>_resolved` tells whether that difference
+    exceeds what the seeds alone would make of it. Flags become a share of the seeds, costs the sum of all members.
+
+    Args:
+        members: the data set of all runs, with the dimensions `MEMBERS` last.
+    """
+    fine = members.sel(resolution="fine")
+    first = fine.isel(seed=0, drop=True).drop_vars("resolution")
+    cells = first.drop_vars([*OUTCOMES, "state", "reason"])
+    for name in OUTCOMES:
+        cells = cells.assign(_measured(members[name]))
+    return cells.assign(_states(members)).assign_attrs(
+        seeds=members["seed"].values.tolist(), members="two resolutions, coarse and fine, with all seeds: members.nc"
+    )
+
+
+def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
+    """The value of a cell and, where it is a measured number, its error."""
+    name, attributes = str(values.name), values.attrs
+    fine, coarse = (values.sel(resolution=which, drop=True) for which in ("fine", "coarse"))
+    if name in COSTS:
+        return {name: _described(values.sum(MEMBERS, min_count=1), attributes, "sum of all members")}
+    mean = _described(fine.mean("seed"), attributes, "mean over seeds at the finer resolution")
+    if name in WITHOUT_ERROR:
+        return {name: mean}
+    error = ((mean - coarse.mean("seed")) ** 2 + standard_error(fine) ** 2) ** 0.5
+    about = {"long_name": f"error of the {attributes['long_name']}", "units": attributes["units"], "comment": _ERROR}
+    flag = {"long_name": f"resolution changes the {attributes['long_name']}", "units": "1", "comment": _RESOLVED}
+    return {
+        name: mean,
+        f"{name}_error": error.assign_attrs(about),
+        f"{name}_resolved": resolved(fine, coarse).assign_attrs(flag),
+    }
+
+
+def _states(members: xr.Dataset) -> dict[str, xr.DataArray]:
+    """A cell is done when all its members are; else it is as its worst member, for that one's reason."""
+    state, reason = members["state"], members["reason"]
+    found = xr.full_like(state.isel(resolution=0, seed=0, drop=True), "done")
+    for name in reversed(_NOT_DONE):
+        found = found.where(~(state == name).any(MEMBERS), name)
+    told = reason.where(state == found, "")
+    why = xr.apply_ufunc(_first, told, input_core_dims=[MEMBERS], vectorize=True, output_dtypes=[object])
+    done = (state == "done").sum(MEMBERS).assign_attrs(long_name="members that are done", units="1")
+    return {"state": found.assign_attrs(state.attrs), "reason": why.assign_attrs(reason.attrs), "members": done}
+
+
+def _first(texts: np.ndarray) -> str:
+    return next((str(text) for text in texts.flat if text), "")
+
+
+def _described(values: xr.DataArray, attributes: dict[str, str], what: str) -> xr.DataArray:
+    comment = "; ".join(filter(None, [attributes.get("comment", ""), what]))
+    return values.assign_attrs({**attributes, "comment": comment})

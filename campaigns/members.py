@@ -1,0 +1,36 @@
+"""Error bars of a study: every cell is run at two resolutions and with several seeds."""
+
+from collections.abc import Iterator
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from engine.collision import Collision
+from engine.validation import Frozen
+
+Seed = Annotated[int, Field(ge=0)]
+
+
+class ErrorBars(Frozen):
+    """What the members of one cell are.
+
+    coarser: particles of the second resolution, as a share of the study's.
+    seeds: seeds of both resolutions.
+    """
+
+    coarser: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.5
+    seeds: Annotated[tuple[Seed, ...], Field(min_length=2)]
+
+    @model_validator(mode="after")
+    def _seeds_differ(self) -> Self:
+        if len(set(self.seeds)) < len(self.seeds):
+            raise ValueError("'seeds' holds a value twice; give every seed once")
+        return self
+
+    def members(self, collision: Collision) -> Iterator[tuple[dict[str, str | int], Collision]]:
+        """Place and settings of every run of one cell, the cheap ones first."""
+        coarse = max(1, round(self.coarser * collision.particles))
+        for resolution, particles in {"coarse": coarse, "fine": collision.particles}.items():
+            for seed in self.seeds:
+                changes = {"particles": particles, "seed": seed}
+                yield {"resolution": resolution, "seed": seed}, collision.model_copy(update=changes)
