@@ -1,4 +1,4 @@
-"""Command line: `python -m engine run JOBDIR` and `python -m engine verify`."""
+"""Command line: `python -m engine run JOBDIR`, `python -m engine explain SCENE` and `python -m engine verify`."""
 
 import logging
 import os
@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from engine.errors import JobBusyError, JobError, SceneError
+from engine.errors import JobBusyError, JobError, RunFault, SceneError
 from engine.jobdir import JobDirectory, Status
 from engine.validation import suggestion
 
@@ -54,6 +54,30 @@ def run(
     if status.state != "done":
         _exit(f"{directory}: {status.state}: {status.reason}", FAILED if status.state == "failed" else INTERRUPTED)
     typer.echo(f"{directory}: done after {status.step} steps")
+
+
+@application.command()
+def explain(
+    scene: Annotated[Path, typer.Argument(help="Scene file, TOML or JSON, or job directory.")],
+    steps: Annotated[int, typer.Option(min=1, help="Steps to measure.")] = 50,
+    threads: Annotated[int, typer.Option(min=1, help="CPU threads.")] = os.cpu_count() or 1,
+    arch: Annotated[Arch, typer.Option(help="Device.")] = Arch.CPU,
+) -> None:
+    """Show the parts of SCENE, their memory and time, and what it leaves out; a job is read, never written to.
+
+    Exit code 0: shown; 1: the steps failed; 2: bad input.
+    """
+    from engine.cost import measure
+    from engine.explain import report
+
+    try:
+        with Console(stderr=True).status(f"measuring {steps} steps"):
+            result = measure(scene, steps, arch.value, threads)
+    except (SceneError, JobError) as error:
+        _exit(str(error), BAD_INPUT)
+    except RunFault as fault:
+        _exit(f"{scene}: {fault}", FAILED)
+    Console(width=max(Console().width, TABLE_WIDTH)).print(report(result))
 
 
 @application.command()

@@ -60,6 +60,11 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
         )
 
 
+def wait() -> None:
+    """Let the device finish what it was given to do."""
+    ti.sync()
+
+
 def on_gpu() -> bool:
     """Whether the running program works on a GPU."""
     return bool(impl.current_cfg().arch != ti.cpu)

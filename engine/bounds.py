@@ -85,6 +85,10 @@ def keeps_momentum(scene: Scene) -> bool:
 
 
 def keeps_energy(scene: Scene) -> bool:
-    """Whether the total is known: not where matter falls along a periodic axis, and is lifted back each period."""
+    """Whether the total is known.
+
+    Not without internal energy, nor where matter falls along a periodic axis, and is lifted back each period.
+    """
     pull = scene.physics.uniform_gravity or (0.0, 0.0, 0.0)
-    return not any(length and along for length, along in zip(scene.period, pull, strict=True))
+    falls = any(length and along for length, along in zip(scene.period, pull, strict=True))
+    return scene.physics.energy and not falls

@@ -1,5 +1,6 @@
 """Saving everything the next step reads, so that a resumed run equals an uninterrupted one bit for bit."""
 
+from pathlib import Path
 from typing import Any
 
 import xarray as xr
@@ -26,7 +27,7 @@ def save_checkpoint(job: JobDirectory, simulation: Simulation, progress: dict[st
         simulation: what to save, between two calls of `advance`.
         progress: what the caller needs to go on, such as the times of its next outputs.
     """
-    state = simulation.particles.read(*Particles.STATE)
+    state = simulation.particles.read(*simulation.particles.held)
     variables = {name: (_dimensions(name, values.ndim), values) for name, values in state.items()}
     clock = {name: kind(getattr(simulation.clock, name)[None]) for name, kind in CLOCK.items()}
     events = {name: float(getattr(simulation, name)) for name in EVENTS}
@@ -44,7 +45,7 @@ def load_checkpoint(job: JobDirectory, simulation: Simulation) -> dict[str, floa
         JobError: the checkpoint belongs to another scene or physics version.
     """
     for path in (job.checkpoint, job.previous_checkpoint):
-        dataset = _readable(path)
+        dataset = _readable(path, simulation.particles)
         if dataset is not None:
             _refuse_foreign(dataset, simulation, str(path))
             return _restore(dataset, simulation)
@@ -55,14 +56,14 @@ def _dimensions(name: str, ndim: int) -> tuple[str, ...]:
     return ("particle", *(f"{name}_{axis}" for axis in range(1, ndim)))
 
 
-def _readable(path: Any) -> xr.Dataset | None:
+def _readable(path: Path, particles: Particles) -> xr.Dataset | None:
     if not path.exists():
         return None
     try:
         dataset = read_dataset(path)
     except JobError:
         return None
-    return dataset if is_finite(dataset) and set(Particles.STATE) <= set(dataset.data_vars) else None
+    return dataset if is_finite(dataset) and set(particles.held) <= set(dataset.data_vars) else None
 
 
 def _refuse_foreign(dataset: xr.Dataset, simulation: Simulation, path: str) -> None:
@@ -77,7 +78,7 @@ def _refuse_foreign(dataset: xr.Dataset, simulation: Simulation, path: str) -> N
 
 def _restore(dataset: xr.Dataset, simulation: Simulation) -> dict[str, float]:
     attributes = dict(dataset.attrs)
-    simulation.particles.write({name: dataset[name].values for name in Particles.STATE})
+    simulation.particles.write({name: dataset[name].values for name in simulation.particles.held})
     simulation.use_stored_blocks()
     for name, kind in CLOCK.items():
         getattr(simulation.clock, name)[None] = kind(attributes.pop(name))

@@ -29,6 +29,7 @@ class SelfGravity(ABC):
 
     def __init__(self, particles: Any, radius: float, places: int) -> None:
         self.particles, self.count = particles, particles.count
+        self.acceleration = particles.hold("acceleration")
         self.radius = ti.field(Real, ())
         self.radius[None] = radius
         shape = capacity(places)
@@ -77,6 +78,11 @@ class SelfGravity(ABC):
         for column, field in enumerate(wanted):
             result[particle[taken], column] = field.to_numpy()[: len(particle)][taken]
         return result
+
+    @ti.func
+    def at(self, p):
+        """Acceleration of particle p [m/s^2], held since it was last set."""
+        return self.acceleration[p]
 
     @ti.func
     def clear(self, first, last):

@@ -39,7 +39,7 @@ class Guard:
 
     def __init__(self, scene: Scene, start: Row, dt: float) -> None:
         self.scene, self.start, self.shortest_step = scene, start, dt / STEPS_FACTOR
-        scale, materials = speed_scale(scene, start), {body.material for body in scene.bodies}
+        scale, materials = speed_scale(scene, start), set(scene.materials)
         self.speed = SPEED_FACTOR * scale
         self.compression = max(compression_limit(material, 0.5 * self.speed**2) for material in materials)
         self.momentum = float(start["mass"]) * (scale + max(material.longitudinal_speed for material in materials))

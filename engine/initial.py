@@ -38,7 +38,7 @@ def _body_state(scene: Scene, index: int) -> Arrays:
     points, pressure = _points(scene, index, body), np.zeros(body.count)
     if isinstance(body, Body) and body.hydrostatic:
         pressure = _hydrostatic_pressure(body, points)
-    mu, energy = compressed(pressure, scene.materials[index])
+    mu, energy = compressed(pressure, scene.materials[index], scene.physics.energy)
     return {
         "x": points + np.array(body.position),
         "v": np.array(body.velocity) + np.cross(np.array(body.spin), points),
@@ -47,26 +47,27 @@ def _body_state(scene: Scene, index: int) -> Arrays:
         "E": energy,
         "tau": np.outer(-pressure / (1.0 + mu), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
         "root": np.full(body.count, body.damage ** (1.0 / 3.0)),
-        "acceleration": np.tile(scene.physics.uniform_gravity or (0.0, 0.0, 0.0), (body.count, 1)),
         "mass": np.full(body.count, body.mass / body.count),
         "body": np.full(body.count, index, dtype=np.int32),
     }
 
 
-def compressed(P: Vector, material: Material) -> tuple[Vector, Vector]:
+def compressed(P: Vector, material: Material, energy: bool) -> tuple[Vector, Vector]:
     """Compression rho/rho0 - 1 [-] and energy [J/kg] of cold rock under pressure.
 
     The energy is that of elastic strain, A mu^2 / (2 rho); it presses too, so P = A mu + (B + (a + b) A/2) mu^2
     (engine/physics.md, sections 2 and 8; without the energy's own share in w0, 1e-10 of its pressure).
+    Matter without energy is on the cold curve, P = A mu + B mu^2.
 
     Args:
         P: pressure [Pa], shape [particle_count].
         material: with the elastic moduli in force.
+        energy: whether matter keeps energy.
     """
-    eos = material.tillotson
-    quadratic = eos.B + 0.5 * (eos.a + eos.b) * eos.A
+    eos, elastic = material.tillotson, 0.5 * material.tillotson.A * float(energy)
+    quadratic = eos.B + (eos.a + eos.b) * elastic
     mu = 2.0 * P / (eos.A + np.sqrt(eos.A**2 + 4.0 * quadratic * P))
-    return mu, 0.5 * eos.A * mu**2 / (material.rho0 * (1.0 + mu))
+    return mu, elastic * mu**2 / (material.rho0 * (1.0 + mu))
 
 
 def _points(scene: Scene, index: int, body: Body | Box) -> NDArray[np.float64]:

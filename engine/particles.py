@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
@@ -9,37 +10,74 @@ from engine.backend import Real, capacity, mat3, overwrite, vec3, vec6
 
 Arrays = dict[str, NDArray[Any]]
 
+KINDS = {
+    "x": vec3,
+    "v": vec3,
+    "C": mat3,
+    "j": Real,
+    "tau": vec6,
+    "mass": Real,
+    "body": ti.i32,
+    "origin": ti.types.vector(3, ti.i32),
+    "B": vec6,
+    "E": Real,
+    "root": Real,
+    "acceleration": vec3,
+}
+"""Type of every quantity."""
+
+ALWAYS = ("x", "v", "C", "j", "tau", "mass", "body", "origin")
+"""Quantities without which no particle moves."""
+
 
 class Particles:
-    """Fields of every particle quantity [SI units].
+    """Fields of the particle quantities [SI units] that a scene needs.
 
-    x, v: position and velocity; C: affine velocity [1/s]; B, j, E, root, tau: see engine/constitution.py;
-    acceleration: gravity held at present; mass; body: index of the body; origin: coordinates of the grid block
-    that held the particle when blocks were last built.
+    x, v: position and velocity; C: affine velocity [1/s]; j = det F - 1; tau: Kirchhoff stress [Pa]; mass; body: index
+    of the body; origin: coordinates of the grid block that held the particle when blocks were last built. Parts of the
+    physics hold more: B, left Cauchy-Green tensor of the isochoric elastic strain minus I; E, energy [J/kg]; root, cube
+    root of damage; acceleration, gravity held at present. A quantity that no part holds is zero: it is read as zeros,
+    and nothing else can be written to it.
 
     Args:
         count: number of particles.
     """
 
-    STATE = ("x", "v", "C", "B", "j", "E", "root", "tau", "acceleration", "mass", "body", "origin")
-    """What a checkpoint holds."""
-
     def __init__(self, count: int) -> None:
         self.count = count
-        shape = capacity(count)
-        self.x, self.v, self.acceleration = vec3.field(shape=shape), vec3.field(shape=shape), vec3.field(shape=shape)
-        self.C = mat3.field(shape=shape)
-        self.B, self.tau = vec6.field(shape=shape), vec6.field(shape=shape)
-        self.j, self.E, self.root = ti.field(Real, shape), ti.field(Real, shape), ti.field(Real, shape)
-        self.mass = ti.field(Real, shape)
-        self.body = ti.field(ti.i32, shape)
-        self.origin = ti.Vector.field(3, ti.i32, shape=shape)
+        for name in ALWAYS:
+            self.hold(name)
+
+    def hold(self, name: str) -> Any:
+        """The field of a quantity, made when it is first asked for."""
+        if name not in self.held:
+            kind, shape = KINDS[name], capacity(self.count)
+            setattr(self, name, kind.field(shape=shape) if hasattr(kind, "field") else ti.field(kind, shape))
+        return getattr(self, name)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Names of the quantities that have a field: what a checkpoint holds."""
+        return tuple(name for name in KINDS if name in vars(self))
 
     def read(self, *names: str) -> Arrays:
-        """Copies of the named fields, first axis the particle."""
-        return {name: getattr(self, name).to_numpy()[: self.count] for name in names or self.STATE}
+        """Copies of the named quantities, of all when none is named; first axis the particle."""
+        return {name: self._values(name) for name in names or KINDS}
 
     def write(self, arrays: Arrays) -> None:
-        """Overwrite the named fields."""
+        """Overwrite the named quantities.
+
+        Raises:
+            ValueError: a quantity that no part holds would not be zero.
+        """
         for name, values in arrays.items():
-            overwrite(getattr(self, name), values)
+            if name in self.held:
+                overwrite(getattr(self, name), values)
+            elif np.any(values):
+                raise ValueError(f"no part of the scene holds '{name}': it can only be zero")
+
+    def _values(self, name: str) -> NDArray[Any]:
+        if name in self.held:
+            return np.asarray(getattr(self, name).to_numpy()[: self.count])
+        kind = KINDS[name]
+        return np.zeros((self.count, *(kind.get_shape() if hasattr(kind, "get_shape") else ())))

@@ -71,7 +71,8 @@ class Wall(Frozen):
 class Physics(Frozen):
     """The parts of physics a scene uses; `null` leaves a part out, and it then costs nothing.
 
-    Pressure is always Tillotson's. `shear` adds the Hencky deviatoric stress, `strength` its radial return;
+    Pressure is always Tillotson's; without `energy` it follows the cold curve, and the ledger has no internal energy.
+    `shear` adds the Hencky deviatoric stress, `strength` its radial return;
     `uniform_gravity` [m/s^2] takes the place of self-gravity.
 
     sound_speed: factor on the speed of sound, in (0, 1]; below 1 a late-stage approximation, in longer time steps, for
@@ -80,6 +81,7 @@ class Physics(Frozen):
         hydrostatic pressure, the tension that opens a flaw) stays (engine/physics.md, section 12).
     """
 
+    energy: bool = True
     shear: bool = True
     strength: bool = True
     fracture: Fracture | None = Fracture()

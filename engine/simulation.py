@@ -6,25 +6,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from engine import assembly
 from engine.blocks import EDGE, HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.body import Solid
 from engine.clock import FAULT_NONE, Clock
-from engine.constitution import Constitution
-from engine.direct_sum import DirectSum
 from engine.errors import stop
-from engine.fracture import Fracture, Unbreakable
 from engine.gravity import SelfGravity
-from engine.initial import all_flaws, initial_state
+from engine.initial import initial_state
 from engine.ledger import Totals, elastic_energy, totals
 from engine.materials import Material
 from engine.particles import Arrays, Particles
 from engine.scene import Scene
-from engine.strength import Strength, Unlimited
-from engine.tillotson import Tillotson
 from engine.transfer import Transfer
-from engine.tree import Tree
-from engine.viscosity import Inviscid, Viscosity
-from engine.walls import Walls
 
 LAUNCHES = 64
 """Most steps launched before the host looks whether they ran."""
@@ -39,23 +32,14 @@ class Simulation:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, physics = scene, scene.physics
-        materials = scene.materials
         self.particles = Particles(scene.particles)
         longest = physics.gravity.interval if physics.gravity else scene.end_time - scene.start_time
         self.clock = Clock(scene.start_time, scene.end_time, longest)
-        self.gravity = _gravity(scene, self.particles)
-        self.constitution = Constitution(
-            self.particles,
-            Tillotson(materials),
-            Strength(materials) if physics.strength else Unlimited(),
-            Fracture(scene.bodies, physics.fracture, all_flaws(scene)) if physics.fracture else Unbreakable(),
-            Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
-            materials,
-            physics.shear,
-        )
-        self.walls = Walls(physics.walls) if physics.walls else None
+        self.gravity = assembly.gravity(scene, self.particles)
+        self.constitution = assembly.constitution(scene, self.particles)
+        self.walls = assembly.walls(scene)
         self._make_room(scene.particles // 8)
-        self.gravity_due = scene.start_time if self.gravity else math.inf
+        self.gravity_due = scene.start_time if physics.gravity else math.inf
         self.gravity_change = 0.0
 
     @property
@@ -79,8 +63,8 @@ class Simulation:
         self.rebuild_blocks()
         self.clock.rate[None] = self._first_rate()
 
-    def advance(self, until: float) -> None:
-        """Take a bounded number of steps, none of them after the first that reaches `until` [s].
+    def advance(self, until: float, steps: int = LAUNCHES) -> None:
+        """Take at most some `steps`, none of them after the first that reaches `until` [s].
 
         Which steps are taken depends on the scene alone, never on how they are spread over calls.
 
@@ -89,7 +73,7 @@ class Simulation:
         """
         self._handle_events()
         self.clock.pause_time[None] = min(until, self.gravity_due)
-        self._launch()
+        self._launch(steps)
         self._check_fault()
 
     def rebuild_blocks(self) -> None:
@@ -117,7 +101,8 @@ class Simulation:
 
     def _make_room(self, blocks: int) -> None:
         dx, cfl = self.scene.dx, self.scene.numerics.cfl
-        self.transfer = Transfer(self.particles, self.constitution, self.clock, self.walls, dx, cfl, blocks)
+        parts = (self.particles, self.constitution, self.gravity, self.clock, self.walls)
+        self.transfer = Transfer(*parts, dx, cfl, blocks)
 
     def _handle_events(self) -> None:
         if self.clock.moved_out[None]:
@@ -126,7 +111,7 @@ class Simulation:
             self._update_gravity()
 
     def _update_gravity(self) -> None:
-        assert self.gravity and self.scene.physics.gravity
+        assert isinstance(self.gravity, SelfGravity) and self.scene.physics.gravity
         interval, dt = self.scene.physics.gravity.interval, self.next_dt
         before = self.particles.read("acceleration")["acceleration"]
         # mean time of the kicks that will use it: a step kicks from where particles are when it begins
@@ -135,9 +120,9 @@ class Simulation:
         self.gravity_change = float(np.linalg.norm(after - before)) / max(float(np.linalg.norm(after)), 1e-300)
         self.gravity_due = self.time + interval
 
-    def _launch(self) -> None:
+    def _launch(self, most: int) -> None:
         left = min(self.clock.pause_time[None], self.scene.end_time) - self.time
-        for _ in range(min(LAUNCHES, math.ceil(left / self.next_dt) + 1)):
+        for _ in range(min(most, math.ceil(left / self.next_dt) + 1)):
             self.transfer.step()
 
     @property
@@ -176,27 +161,11 @@ class Simulation:
         bulk = np.array([material.tillotson.A for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
         elastic = elastic_energy(state, self.rho0(state), bulk, shear)
-        return totals(state, self.scene.dx, elastic, self._gravitational_energy(state))
-
-    def _gravitational_energy(self, state: Arrays) -> float:
-        """Energy [J] in the field of the particles, or in the uniform one relative to the origin."""
-        if self.gravity:
-            return float(self.gravity.energy())
-        uniform = np.array(self.scene.physics.uniform_gravity or (0.0, 0.0, 0.0))
-        return -float(np.sum(state["mass"] * (state["x"] @ uniform)))
+        return totals(state, self.scene.dx, elastic, self.gravity.energy())
 
     def rho0(self, state: Arrays) -> NDArray[np.float64]:
         """Reference density of every particle [kg/m^3], shape [particle_count]."""
         return np.array([body.material.rho0 for body in self.scene.bodies])[state["body"]]
-
-
-def _gravity(scene: Scene, particles: Particles) -> SelfGravity | None:
-    """The solver for the scene's gravity: a tree, or the sum over all pairs at opening 0."""
-    gravity = scene.physics.gravity
-    if gravity is None:
-        return None
-    radius = gravity.softening * scene.spacing
-    return Tree(particles, radius, gravity.opening) if gravity.opening > 0.0 else DirectSum(particles, radius)
 
 
 def _fastest(body: Solid, material: Material) -> float:

@@ -51,6 +51,18 @@ class Tillotson:
         return P, ti.max(P_rho + P * P_E / (rho * rho), floor)
 
 
+@ti.data_oriented
+class ColdTillotson(Tillotson):
+    """Pressure on the cold curve, from compression alone; arguments as `Tillotson`."""
+
+    @ti.func
+    def pressure(self, mu, E, body):
+        """Pressure [Pa] and squared sound speed [m^2/s^2]; there is no energy E."""
+        m = self.table[body]
+        floor = SOUND_SPEED_FLOOR * SOUND_SPEED_FLOOR * m.A / m.rho0
+        return (m.A + m.B * mu) * mu, ti.max((m.A + 2.0 * m.B * mu) / m.rho0, floor)
+
+
 @ti.func
 def condensed(m, mu, E):
     """Pressure of compressed or cold matter and its derivatives by rho and by E."""

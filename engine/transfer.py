@@ -44,6 +44,7 @@ class Transfer:
     Args:
         particles: state of the particles.
         constitution: response of one particle.
+        gravity: acceleration of one particle.
         clock: time and time step.
         walls: rigid planes, or `None`.
         dx: grid spacing [m].
@@ -52,9 +53,18 @@ class Transfer:
     """
 
     def __init__(
-        self, particles: Any, constitution: Any, clock: Clock, walls: Any, dx: float, cfl: float, blocks: int
+        self,
+        particles: Any,
+        constitution: Any,
+        gravity: Any,
+        clock: Clock,
+        walls: Any,
+        dx: float,
+        cfl: float,
+        blocks: int,
     ) -> None:
-        self.particles, self.constitution, self.clock, self.walls = particles, constitution, clock, walls
+        self.particles, self.constitution, self.gravity = particles, constitution, gravity
+        self.clock, self.walls = clock, walls
         self.by_block, self.has_walls = not on_gpu(), walls is not None
         self.capacity = capacity(blocks)
         self.dx, self.cfl = ti.field(Real, ()), ti.field(Real, ())
@@ -181,7 +191,7 @@ class Transfer:
         mass, dt = self.particles.mass[p], self.clock.dt[None]
         volume = mass / self.constitution.table[self.particles.body[p]].rho0
         affine = mass * self.particles.C[p] - (4.0 * dt * volume / (dx * dx)) * unpack(self.particles.tau[p])
-        momentum = mass * (self.particles.v[p] + dt * self.particles.acceleration[p])
+        momentum = mass * (self.particles.v[p] + dt * self.gravity.at(p))
         start = b * COPY + (local[0] * SPAN + local[1]) * SPAN + local[2]
         for i in range(3):
             for j in range(3):
@@ -233,7 +243,7 @@ class Transfer:
         if not self.particles.j[p] > -1.0 or tm.isinf(self.particles.j[p]):
             self.clock.report_fault(FAULT_INVERTED, p)
         wave = (c + v.norm()) / (self.cfl[None] * dx)
-        fall = ti.sqrt(self.particles.acceleration[p].norm() / dx)
+        fall = ti.sqrt(self.gravity.at(p).norm() / dx)
         return ti.max(wave, ti.sqrt(norm_squared(L)) / LARGEST_INCREMENT, fall, 6.0 * diffusivity / (dx * dx))
 
     @ti.func
@@ -243,7 +253,7 @@ class Transfer:
         Returns the inverse time step [1/s] that keeps it from passing another unseen.
         """
         dt = self.clock.dt[None]
-        self.particles.v[p] += dt * self.particles.acceleration[p]
+        self.particles.v[p] += dt * self.gravity.at(p)
         self.particles.x[p] += dt * self.particles.v[p]
         self.particles.C[p] = 0.5 * (self.particles.C[p] - self.particles.C[p].transpose())
         return self.particles.v[p].norm() / (self.cfl[None] * self.dx[None])

@@ -7,9 +7,12 @@ from engine import materials
 from engine.backend import Real, mat3
 from engine.body import Body
 from engine.constitution import Constitution
+from engine.damage import Damage
+from engine.energy import InternalEnergy
 from engine.flaws import Flaws
 from engine.fracture import Fracture
 from engine.particles import Particles
+from engine.shear import Hencky
 from engine.strength import Strength
 from engine.tillotson import Tillotson
 from engine.viscosity import Inviscid
@@ -31,11 +34,11 @@ class Specimen:
         self.constitution = Constitution(
             self.particles,
             Tillotson(rock),
-            Strength(rock),
-            Fracture([body], rule, flaws),
+            InternalEnergy(self.particles),
+            Hencky(self.particles, Strength(rock), rock),
+            Damage(self.particles, Fracture([body], rule, flaws)),
             Inviscid(),
             rock,
-            True,
         )
 
     def stretch(self, rate: float, dt: float) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from engine import assembly
 from engine.constitution import Constitution
 from engine.particles import Arrays, Particles
 from engine.simulation import Simulation
@@ -29,12 +30,11 @@ def dense_grid_only(simulation: Simulation) -> DenseTransfer:
 
 
 def _dense(simulation: Simulation, kind: type[Constitution]) -> DenseTransfer:
-    state, own = simulation.particles.read(), simulation.constitution
-    particles = Particles(simulation.particles.count)
-    particles.write(state)
-    materials = [body.material for body in simulation.scene.bodies]
-    parts = (own.pressure, own.strength, own.fracture, own.viscosity)
-    return DenseTransfer(particles, kind(particles, *parts, materials, own.shear), simulation.scene.dx)
+    scene, particles = simulation.scene, Particles(simulation.particles.count)
+    own, gravity = assembly.constitution(scene, particles), assembly.gravity(scene, particles)
+    particles.write(simulation.particles.read())
+    parts = (own.pressure, own.energy, own.shear, own.damage, own.viscosity, scene.materials)
+    return DenseTransfer(particles, kind(particles, *parts), gravity, scene.dx)
 
 
 def differences(simulation: Simulation, other: DenseTransfer) -> dict[str, float]:

@@ -26,11 +26,12 @@ class DenseTransfer:
     Args:
         particles: state of the particles.
         constitution: response of one particle, with the interface of `engine.constitution`.
+        gravity: acceleration of one particle, likewise.
         dx: grid spacing [m].
     """
 
-    def __init__(self, particles: Particles, constitution: Any, dx: float) -> None:
-        self.particles, self.constitution, self.dx = particles, constitution, dx
+    def __init__(self, particles: Particles, constitution: Any, gravity: Any, dx: float) -> None:
+        self.particles, self.constitution, self.gravity, self.dx = particles, constitution, gravity, dx
         lowest, shape = _box(particles.read("x")["x"], dx)
         self.lowest = ti.Vector(lowest)
         self.nodes = vec4.field(shape=shape)
@@ -58,7 +59,7 @@ class DenseTransfer:
             volume = mass / self.constitution.table[self.particles.body[p]].rho0
             stress = (4.0 * dt * volume / (self.dx * self.dx)) * unpack(self.particles.tau[p])
             affine = mass * self.particles.C[p] - stress
-            momentum = mass * (self.particles.v[p] + dt * self.particles.acceleration[p])
+            momentum = mass * (self.particles.v[p] + dt * self.gravity.at(p))
             for i, j, k in ti.static(ti.ndrange(3, 3, 3)):
                 weight = weights[0, i] * weights[1, j] * weights[2, k]
                 m = momentum + affine @ (self.dx * (vec3(i, j, k) - f))

@@ -1,13 +1,6 @@
 """Memory of a simulation: what its particles and grid occupy, and what a step moves at least."""
 
-from collections.abc import Iterable, Iterator
-from math import prod
-from typing import Any
-
-import numpy as np
-import taichi as ti
-from taichi.lang.util import to_numpy_type
-
+from engine.parts import allocated_bytes, entry_bytes, own_fields
 from engine.simulation import Simulation
 from engine.transfer import COPY
 
@@ -23,11 +16,11 @@ GRID_PASSES = 4
 def bytes_per_step(simulation: Simulation) -> float:
     """Least traffic of one step with memory, per particle, when nothing stays in cache from kernel to kernel."""
     particles, transfer = simulation.particles, simulation.transfer
-    names = (*PARTICLES_TO_GRID, *GRID_TO_PARTICLES, *UPDATED)
-    state = sum(_entry_bytes(getattr(particles, name)) for name in names)
-    state += 2 * _entry_bytes(transfer.order)
+    names = [name for name in (*PARTICLES_TO_GRID, *GRID_TO_PARTICLES, *UPDATED) if name in particles.held]
+    state = sum(entry_bytes(getattr(particles, name)) for name in names)
+    state += 2 * entry_bytes(transfer.order)
     copies = int(transfer.block_count[None]) * COPY
-    return state + GRID_PASSES * copies * _entry_bytes(transfer.nodes) / particles.count
+    return state + GRID_PASSES * copies * entry_bytes(transfer.nodes) / particles.count
 
 
 def allocated(simulation: Simulation) -> dict[str, float]:
@@ -35,29 +28,15 @@ def allocated(simulation: Simulation) -> dict[str, float]:
 
     Fields have room for a power of two of entries, so what is allocated per particle jumps by two.
     """
-    particles, transfer, fracture = simulation.particles, simulation.transfer, simulation.constitution.fracture
+    particles, transfer, fracture = simulation.particles, simulation.transfer, simulation.constitution.damage.fracture
     count = particles.count
-    per_particle = [*_fields(particles), transfer.order, transfer.owner]
+    per_particle = [*own_fields(particles).values(), transfer.order, transfer.owner]
     flaws = [fracture.first, fracture.strain]
-    used = sum(map(_entry_bytes, [*per_particle, fracture.first])) * count
-    used += int(fracture.first[count]) * _entry_bytes(fracture.strain)
-    grid = [field for field in _fields(transfer) if field is not transfer.order and field is not transfer.owner]
+    used = sum(map(entry_bytes, [*per_particle, fracture.first])) * count
+    used += int(fracture.first[count]) * entry_bytes(fracture.strain)
+    grid = [field for name, field in own_fields(transfer).items() if name not in ("order", "owner")]
     return {
-        "state": _bytes([*per_particle, *flaws]) / count,
+        "state": sum(map(allocated_bytes, [*per_particle, *flaws])) / count,
         "state_used": used / count,
-        "grid": _bytes(grid) / count,
+        "grid": sum(map(allocated_bytes, grid)) / count,
     }
-
-
-def _fields(owner: Any) -> Iterator[Any]:
-    return (value for value in vars(owner).values() if isinstance(value, ti.Field))
-
-
-def _bytes(fields: Iterable[Any]) -> int:
-    return sum(prod(field.shape) * _entry_bytes(field) for field in fields)
-
-
-def _entry_bytes(field: Any) -> int:
-    """Size of one entry of a field."""
-    components = getattr(field, "n", 1) * getattr(field, "m", 1)
-    return int(components * np.dtype(to_numpy_type(field.dtype)).itemsize)

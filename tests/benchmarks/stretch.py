@@ -40,27 +40,27 @@ class StretchConstitution(Constitution):
         J = F.determinant()
         d = symmetric(L)
         half_work = 0.5 * dt / m.rho0 * ddot(unpack(self.particles.tau[p]), d)
-        E = self.particles.E[p] + 2.0 * half_work
+        E = self.energy.after(p, 2.0 * half_work)
         P, c2 = self.pressure.pressure(1.0 / J - 1.0, E, body)
         if P < 0.0:
-            P *= 1.0 - self.damage(p)
+            P *= 1.0 - self.damage.value(p)
         F, s, largest = self.shear_part(F, J, P, E, p)
         tau = s - J * P * identity()
         self.F[p], self.particles.tau[p] = F, pack(tau)
-        self.particles.E[p] += half_work + 0.5 * dt / m.rho0 * ddot(tau, d)
-        self.particles.root[p] = self.grow(largest / J - P, dt, p)
+        self.energy.add(p, half_work + 0.5 * dt / m.rho0 * ddot(tau, d))
+        self.damage.root[p] = self.grow(largest / J - P, dt, p)
         return self.wave_speed(c2, body), 0.0
 
     @ti.func
     def shear_part(self, F, J, P, E, p):
         """Elastic F after yielding, deviatoric Kirchhoff stress [Pa] and its largest principal value."""
         body = self.particles.body[p]
-        G = self.table[body].shear_modulus
+        G = self.shear.modulus(body)
         U, S, V = ti.svd(F)
         logs = vec3(ti.log(S[0, 0]), ti.log(S[1, 1]), ti.log(S[2, 2]))
         strain = logs - logs.sum() / 3.0
         root_J2 = 2.0 * G / J * ti.sqrt(0.5 * strain.norm_sqr())
-        share = self.strength.retained(root_J2, P, E, self.damage(p), body)
+        share = self.shear.strength.retained(root_J2, P, E, self.damage.value(p), body)
         elastic = F
         if share < 1.0:
             elastic = U @ diagonal(ti.exp(logs - (1.0 - share) * strain)) @ V.transpose()
@@ -71,15 +71,15 @@ class StretchConstitution(Constitution):
     @ti.func
     def grow(self, tension, dt, p):
         """Cube root of damage after a step under a largest principal stress [Pa]."""
-        m = self.fracture.table[self.particles.body[p]]
-        root = self.particles.root[p]
-        first, end = self.fracture.first[p], self.fracture.first[p + 1]
+        fracture = ti.static(self.damage.fracture)
+        m, root = fracture.table[self.particles.body[p]], self.damage.root[p]
+        first, end = fracture.first[p], fracture.first[p + 1]
         flaw = first
-        while flaw < end and self.fracture.strain[flaw] < tension / m.modulus:
+        while flaw < end and fracture.strain[flaw] < tension / m.modulus:
             flaw += 1
         active = flaw - first
         if active > 0:
-            cracks = active if ti.static(self.fracture.per_flaw) else 1
+            cracks = active if ti.static(fracture.per_flaw) else 1
             root = ti.max(root, ti.min(root + cracks * m.rate * dt, (active / (end - first)) ** (1.0 / 3.0)))
         return root
 

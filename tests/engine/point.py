@@ -7,9 +7,12 @@ import taichi as ti
 
 from engine.backend import mat3
 from engine.constitution import Constitution
+from engine.damage import Damage
+from engine.energy import InternalEnergy
 from engine.fracture import Unbreakable
 from engine.materials import Material
 from engine.particles import Particles
+from engine.shear import Fluid, Hencky
 from engine.strength import Strength, Unlimited
 from engine.tillotson import Tillotson
 from engine.viscosity import Inviscid
@@ -41,11 +44,11 @@ class Points:
         self.constitution = Constitution(
             self.particles,
             Tillotson(materials),
-            Strength(materials) if strength else Unlimited(),
-            fracture or Unbreakable(),
+            InternalEnergy(self.particles),
+            Hencky(self.particles, Strength(materials) if strength else Unlimited(), materials) if shear else Fluid(),
+            Damage(self.particles, fracture or Unbreakable()),
             viscosity or Inviscid(),
             materials,
-            shear,
         )
         self.wave_speed = np.zeros(count)
 

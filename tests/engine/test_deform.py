@@ -4,7 +4,7 @@ import taichi as ti
 from scipy.spatial.transform import Rotation
 
 from engine.backend import mat3
-from engine.constitution import deform
+from engine.shear import deform
 from engine.tensors import deviator, half_log, unpack
 from tests.engine.device import Array, compose, norm, rotations, traceless, worst
 from tests.engine.oracle import log_strain

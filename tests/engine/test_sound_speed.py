@@ -54,7 +54,7 @@ def test_the_equation_of_state_agrees_with_the_initial_pressure(factor):
 def test_flaws_open_at_the_same_tension():
     def grown(factor):
         scene = Scene(bodies=(Body(radius=50e3, particles=100),), end_time=1.0, physics=Physics(sound_speed=factor))
-        law = Simulation(scene).constitution.fracture
+        law = Simulation(scene).constitution.damage.fracture
         tension = -np.linspace(0.0, 1e6, 100)
         p, nothing = np.arange(100, dtype=np.int32), np.zeros(100)
         return evaluate(law.grow, nothing, np.zeros((100, 3, 3)), tension, 1.0 + nothing, p, 0 * p)[0]

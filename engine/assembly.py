@@ -1,0 +1,66 @@
+"""Which part of the engine stands for each entry of a scene's physics.
+
+What a scene leaves out is stood for by a part that holds no field and does nothing, so it costs nothing.
+"""
+
+from typing import Any
+
+from engine.constitution import Constitution
+from engine.damage import Damage, Intact
+from engine.direct_sum import DirectSum
+from engine.energy import Barotropic, InternalEnergy
+from engine.fracture import Fracture, Unbreakable
+from engine.gravity import SelfGravity
+from engine.initial import all_flaws
+from engine.particles import Particles
+from engine.scene import Scene
+from engine.shear import Fluid, Hencky
+from engine.strength import Strength, Unlimited
+from engine.tillotson import ColdTillotson, Tillotson
+from engine.tree import Tree
+from engine.uniform_gravity import UniformGravity, Weightless
+from engine.viscosity import Inviscid, Viscosity
+from engine.walls import Walls
+
+
+def constitution(scene: Scene, particles: Particles) -> Constitution:
+    """The response of matter."""
+    physics, materials = scene.physics, scene.materials
+    return Constitution(
+        particles,
+        Tillotson(materials) if physics.energy else ColdTillotson(materials),
+        InternalEnergy(particles) if physics.energy else Barotropic(),
+        _shear(scene, particles),
+        _damage(scene, particles),
+        Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
+        materials,
+    )
+
+
+def gravity(scene: Scene, particles: Particles) -> SelfGravity | UniformGravity | Weightless:
+    """The pull on every particle; self-gravity by a tree, or as the sum over all pairs at opening 0."""
+    physics = scene.physics
+    if physics.gravity:
+        radius, opening = physics.gravity.softening * scene.spacing, physics.gravity.opening
+        return Tree(particles, radius, opening) if opening > 0.0 else DirectSum(particles, radius)
+    return UniformGravity(particles, physics.uniform_gravity) if physics.uniform_gravity else Weightless()
+
+
+def walls(scene: Scene) -> Walls | None:
+    """Rigid planes."""
+    return Walls(scene.physics.walls) if scene.physics.walls else None
+
+
+def _shear(scene: Scene, particles: Particles) -> Any:
+    if not scene.physics.shear:
+        return Fluid()
+    strength = Strength(scene.materials) if scene.physics.strength else Unlimited()
+    return Hencky(particles, strength, scene.materials)
+
+
+def _damage(scene: Scene, particles: Particles) -> Any:
+    """Damage that grows, that stays, or none."""
+    rule = scene.physics.fracture
+    if rule:
+        return Damage(particles, Fracture(scene.bodies, rule, all_flaws(scene)))
+    return Damage(particles, Unbreakable()) if any(body.damage for body in scene.bodies) else Intact()

@@ -1,0 +1,103 @@
+"""What the steps of a scene cost, measured by running some in memory."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from engine import backend
+from engine.checkpoint import load_checkpoint
+from engine.jobdir import JobDirectory
+from engine.parts import parts_of
+from engine.scene import read_scene, scene_in
+from engine.simulation import Simulation
+
+
+@dataclass
+class Cost:
+    """Time of repeated work.
+
+    Attributes:
+        calls: how often it ran.
+        wall, cpu: wall time, and CPU time of all threads [s].
+    """
+
+    calls: int = 0
+    wall: float = 0.0
+    cpu: float = 0.0
+
+    @contextmanager
+    def lap(self) -> Iterator[None]:
+        """Add the work in the `with` block."""
+        wall, cpu = time.perf_counter(), time.process_time()
+        yield
+        backend.wait()
+        self.calls += 1
+        self.wall += time.perf_counter() - wall
+        self.cpu += time.process_time() - cpu
+
+
+@dataclass
+class Measurement:
+    """Steps of a scene, and what they took.
+
+    Attributes:
+        simulation: in the state after them.
+        begun: simulated time [s] of the first.
+        steps: how many were measured.
+        whole: cost of all of them, with everything between.
+        kernels: cost of every kernel that ran, by part and name.
+    """
+
+    simulation: Simulation
+    begun: float
+    steps: int = 0
+    whole: Cost = field(default_factory=Cost)
+    kernels: dict[tuple[str, str], Cost] = field(default_factory=dict)
+
+
+def measure(source: Path, steps: int, arch: str, threads: int) -> Measurement:
+    """Run some steps in memory, from the checkpoint of a job if it has one; no file is written.
+
+    Args:
+        source: a scene file or a job directory.
+        steps: how many steps to measure, after one that compiles what it needs.
+        arch, threads: device and CPU threads.
+
+    Raises:
+        SceneError: the scene cannot be read.
+        JobError: the checkpoint is of another scene or physics version.
+        RunFault: a particle left the range in which the equations hold.
+    """
+    scene = scene_in(source) if source.is_dir() else read_scene(source)
+    backend.start(arch, threads)
+    simulation = Simulation(scene)
+    if not (source.is_dir() and load_checkpoint(JobDirectory(source), simulation)):
+        simulation.start()
+    simulation.advance(scene.end_time, steps=1)
+    result = Measurement(simulation, simulation.time)
+    _watch(result)
+    first = simulation.step
+    with result.whole.lap():
+        while not simulation.finished and simulation.step - first < steps:
+            simulation.advance(scene.end_time, steps=1)
+    result.steps = simulation.step - first
+    return result
+
+
+def _watch(result: Measurement) -> None:
+    """Let every kernel of the simulation's parts add to its cost when it runs."""
+    for part in parts_of(result.simulation):
+        for name in part.kernels:
+            cost = result.kernels[part.name, name] = Cost()
+            setattr(part.content, name, _timed(getattr(part.content, name), cost))
+
+
+def _timed(kernel: Callable[..., Any], cost: Cost) -> Callable[..., Any]:
+    def run(*arguments: Any) -> Any:
+        with cost.lap():
+            return kernel(*arguments)
+
+    return run

@@ -1,0 +1,45 @@
+"""Damage of particles, or matter that has none (engine/physics.md, section 5)."""
+
+from typing import Any
+
+import taichi as ti
+
+from engine.backend import Real
+
+
+@ti.data_oriented
+class Damage:
+    """Damage as its cube root, which grows at constant speed.
+
+    Args:
+        particles: state of the particles.
+        fracture: growth of damage.
+    """
+
+    def __init__(self, particles: Any, fracture: Any) -> None:
+        self.root, self.fracture = particles.hold("root"), fracture
+
+    @ti.func
+    def value(self, p):
+        """Damage of particle p [-]."""
+        root = self.root[p]
+        return root * root * root
+
+    @ti.func
+    def grow(self, p, s, P, dt, body):
+        """Break particle p further, under deviatoric Cauchy stress s [Pa] and pressure P [Pa], for a step dt [s]."""
+        self.root[p] = self.fracture.grow(self.root[p], s, P, dt, p, body)
+
+
+@ti.data_oriented
+class Intact:
+    """Matter that is whole and never breaks."""
+
+    @ti.func
+    def value(self, p):
+        """None."""
+        return ti.cast(0.0, Real)
+
+    @ti.func
+    def grow(self, p, s, P, dt, body):
+        """Nothing breaks."""

@@ -1,0 +1,84 @@
+"""What the parts of a simulation hold on the device and run there, found by looking at them."""
+
+import inspect
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+from taichi.lang.field import Field
+from taichi.lang.struct import StructField
+from taichi.lang.util import to_numpy_type
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part of a simulation.
+
+    Attributes:
+        name: attribute that holds it.
+        content: the part itself.
+        fields: its fields by name, less those that belong to a part inside it or beside it.
+        kernels: names of its kernels.
+    """
+
+    name: str
+    content: Any
+    fields: dict[str, Any]
+    kernels: tuple[str, ...]
+
+    @property
+    def left_out(self) -> bool:
+        """Whether it only stands for what the scene does without."""
+        return not (self.fields or self.kernels)
+
+
+def parts_of(simulation: Any) -> list[Part]:
+    """Every part, outer ones first; a field that several hold is the innermost's."""
+    parts: list[Part] = []
+    claimed: set[int] = set()
+    for name, content in reversed(list(_walk(simulation))):
+        fields = {key: field for key, field in own_fields(content).items() if id(field) not in claimed}
+        claimed.update(map(id, fields.values()))
+        parts.append(Part(name, content, fields, _kernels(content)))
+    return parts[::-1]
+
+
+def own_fields(content: Any) -> dict[str, Any]:
+    """Fields that are attributes of an object, by name."""
+    return {name: value for name, value in vars(content).items() if isinstance(value, Field)}
+
+
+def allocated_bytes(field: Any) -> int:
+    """Memory of a field."""
+    return int(prod(field.shape)) * entry_bytes(field)
+
+
+def entry_bytes(field: Any) -> int:
+    """Memory of one entry of a field."""
+    if isinstance(field, StructField):
+        return sum(entry_bytes(field.get_member_field(key)) for key in field.keys)
+    components = getattr(field, "n", 1) * getattr(field, "m", 1)
+    return int(components * np.dtype(to_numpy_type(field.dtype)).itemsize)
+
+
+def _walk(simulation: Any) -> Iterator[tuple[str, Any]]:
+    """Names and parts, breadth first, each part once."""
+    seen, queue = {id(simulation)}, [("simulation", simulation)]
+    while queue:
+        name, content = queue.pop(0)
+        yield name, content
+        inner = [(key, value) for key, value in vars(content).items() if _is_part(value) and id(value) not in seen]
+        seen.update(id(value) for _, value in inner)
+        queue += inner
+
+
+def _is_part(value: Any) -> bool:
+    return type(value).__module__.partition(".")[0] == "engine" and not isinstance(value, BaseModel)
+
+
+def _kernels(content: Any) -> tuple[str, ...]:
+    kind = type(content)
+    return tuple(name for name in dir(kind) if hasattr(inspect.getattr_static(kind, name), "_is_wrapped_kernel"))

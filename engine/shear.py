@@ -1,0 +1,98 @@
+"""Shear stress of particles: Hencky's law up to the strength, or none (engine/physics.md, sections 1, 3 and 4).
+
+The state is `B`, the left Cauchy-Green tensor of the isochoric elastic strain minus I. Storing B and j = det F - 1
+instead of F keeps the digits of strains of 1e-6; an isotropic law does not see the rotation in F.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import taichi as ti
+
+from engine.backend import Real, vec6
+from engine.materials import Material
+from engine.tensors import (
+    determinant_increment,
+    deviator,
+    exp_minus_identity,
+    half_log,
+    identity,
+    norm_squared,
+    pack,
+    unpack,
+)
+
+
+@ti.func
+def deform(B, j, A):
+    """Trial strain after the displacement gradient A = dt L.
+
+    The isotropic part of I + B carries no stress; the factor, det(I + A)^(-2/3) to third order, keeps it near one.
+    """
+    growth = determinant_increment(A)
+    excess = -growth * (2.0 / 3.0 - growth * (5.0 / 9.0 - growth * (40.0 / 81.0)))
+    C = unpack(B)
+    AC = A @ C
+    increment = A + A.transpose() + AC + AC.transpose() + A @ (identity() + C) @ A.transpose()
+    return pack((1.0 + excess) * (C + increment) + excess * identity()), j + (1.0 + j) * growth
+
+
+@ti.data_oriented
+class Hencky:
+    """Deviatoric stress linear in the logarithmic strain, limited by strength.
+
+    Args:
+        particles: state of the particles.
+        strength: radial return.
+        materials: one per body.
+    """
+
+    def __init__(self, particles: Any, strength: Any, materials: Sequence[Material]) -> None:
+        self.B, self.strength = particles.hold("B"), strength
+        self.table = ti.types.struct(modulus=Real).field(shape=len(materials))
+        for i, material in enumerate(materials):
+            self.table.modulus[i] = material.shear_modulus
+
+    @ti.func
+    def deform(self, p, j, A):
+        """Trial strain of particle p, and det F - 1, after the displacement gradient A."""
+        return deform(self.B[p], j, A)
+
+    @ti.func
+    def stress(self, p, B, J, P, E, D, body):
+        """Deviatoric Kirchhoff stress [Pa] of the trial strain B; what remains elastic after yielding is kept."""
+        G = self.modulus(body)
+        remaining = B
+        strain = deviator(half_log(unpack(B)))
+        root_J2 = 2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain))
+        share = self.strength.retained(root_J2, P, E, D, body)
+        if share < 1.0:
+            strain *= share
+            remaining = pack(exp_minus_identity(2.0 * strain))
+        self.B[p] = remaining
+        return 2.0 * G * strain
+
+    @ti.func
+    def modulus(self, body):
+        """Shear modulus [Pa]."""
+        return self.table[body].modulus
+
+
+@ti.data_oriented
+class Fluid:
+    """Matter without shear stress."""
+
+    @ti.func
+    def deform(self, p, j, A):
+        """No strain but det F - 1."""
+        return vec6(0.0), j + (1.0 + j) * determinant_increment(A)
+
+    @ti.func
+    def stress(self, p, B, J, P, E, D, body):
+        """No stress."""
+        return 0.0 * identity()
+
+    @ti.func
+    def modulus(self, body):
+        """No resistance."""
+        return ti.cast(0.0, Real)
