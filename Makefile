@@ -17,7 +17,7 @@ RESOURCES = $(if $(WORKERS),--workers $(WORKERS)) $(if $(THREADS),--threads-per-
 THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; exit $$code
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign resume plan status plots test test-slow bench lint clean
+.PHONY: help install campaign resume plan status plots accuracy test test-slow bench lint clean
 
 help: ## explain all targets
 	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
@@ -45,6 +45,10 @@ status: $(INSTALLED) ## show how every job of STUDY stands
 
 plots: $(INSTALLED) ## draw the figures and the report of STUDY
 	@directory=$$($(RUN) campaigns where '$(STUDY)' --runs '$(RUNS)') && $(RUN) analysis plots "$$directory"
+
+accuracy: $(INSTALLED) ## turn every numerical setting of one collision: error against computing time
+	@$(RUN) campaigns run accuracy --runs '$(RUNS)' $(RESOURCES) ; code=$$?; \
+		[ $$code -gt 1 ] || $(RUN) analysis accuracy '$(RUNS)/accuracy'; exit $$code
 
 test: $(INSTALLED) ## run the fast tests
 	$(RUN) pytest

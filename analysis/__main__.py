@@ -1,10 +1,11 @@
-"""The command line: `python -m analysis plots CAMPAIGN` and `python -m analysis remnant JOB`."""
+"""The command line: `python -m analysis plots CAMPAIGN`, `accuracy CAMPAIGN` and `remnant JOB`."""
 
 import sys
 from pathlib import Path
 
 import typer
 
+from analysis.accuracy.report import report
 from analysis.plots import plots as draw
 from analysis.remnant import latest, measure
 from analysis.tables import printed, reasons, shape_table, unresolved
@@ -24,6 +25,14 @@ def plots(campaign: Path) -> None:
         typer.echo(line)
     if not (results["state"] == "done").any():
         typer.echo("no job of this campaign is done yet: table and figures show states only")
+    typer.echo("written: " + ", ".join(str(path) for path in written))
+
+
+@app.command()
+def accuracy(campaign: Path) -> None:
+    """Compare the cases of a campaign that turns one setting at a time: what each costs and changes."""
+    text, written = report(campaign)
+    typer.echo(text)
     typer.echo("written: " + ", ".join(str(path) for path in written))
 
 

@@ -7,11 +7,11 @@ import matplotlib
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
 from engine.verification.knobs import TRADEOFFS
+from engine.verification.pareto import pareto
 
 COLUMNS = 4
 
@@ -41,13 +41,6 @@ def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:
     axes.loglog(front["cpu_time"], front["error"], "--", color="0.4", lw=2.5, zorder=0, label="no run beats these")
     axes.set_title(f"{name}: {TRADEOFFS[name].quantity}", fontsize=7)
     axes.set(xlabel="CPU time [s]", ylabel="error")
-
-
-def pareto(runs: pd.DataFrame) -> pd.DataFrame:
-    """The runs that are more accurate than every faster one, fastest first."""
-    ordered = runs.sort_values(["cpu_time", "error"])
-    best = np.minimum.accumulate(np.asarray(ordered["error"], dtype=float))
-    return ordered[(ordered["error"] == best) & ~pd.Series(best, index=ordered.index).duplicated()]
 
 
 def _color(knob: str) -> str:

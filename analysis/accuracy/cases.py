@@ -1,0 +1,53 @@
+"""Which setting each case of a campaign turns, against the case named base."""
+
+from dataclasses import dataclass
+
+from analysis.campaign import NONE, Campaign, Scalar
+from engine.errors import SceneError
+
+BASE = "base"
+"""Name of the case that all others are compared with."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case of a campaign.
+
+    Attributes:
+        knob: dotted key of the one setting in which it differs from the base; `none` for the base, else `several`.
+        value: where it is turned to, `none` for the base.
+        particles: in the target.
+    """
+
+    knob: str
+    value: Scalar
+    particles: int
+
+
+def cases(campaign: Campaign) -> dict[str, Case]:
+    """All cases by name.
+
+    Raises:
+        SceneError: the campaign has other dimensions than case and seed, or no case named base.
+    """
+    if campaign.dims != ("case", "seed"):
+        raise SceneError(
+            f"campaign {campaign.name}: has the dimensions {', '.join(campaign.dims)}; "
+            "accuracy needs [[cases]] and the axis seed, as the study accuracy has them"
+        )
+    if BASE not in campaign.coords["case"]:
+        raise SceneError(f"campaign {campaign.name}: has no case '{BASE}'; give the one to compare with that name")
+    tables = {str(job.index["case"]): job.parameters for job in campaign.jobs}
+    return {name: _case(table, tables[BASE]) for name, table in tables.items()}
+
+
+def _case(table: dict[str, Scalar], base: dict[str, Scalar]) -> Case:
+    keys = [key for key in table | base if key != "seed" and _value(table, key) != _value(base, key)]
+    knob = keys[0] if len(keys) == 1 else "several" if keys else NONE
+    return Case(knob, table.get(knob, NONE), int(table["particles"]))
+
+
+def _value(table: dict[str, Scalar], key: str) -> Scalar:
+    """A setting; what is not set counts as 0, as no viscosity is a viscosity of 0."""
+    value = table.get(key, NONE)
+    return 0.0 if value == NONE else value

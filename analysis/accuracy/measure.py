@@ -1,0 +1,97 @@
+"""The data set of accuracy: means over seeds, their differences to the base and to the finest case, and their cost."""
+
+import numpy as np
+import xarray as xr
+
+from analysis.accuracy.cases import BASE, Case
+from analysis.accuracy.orders import orders
+from analysis.statistics import count, difference, interval, resolved
+from analysis.variables import OUTCOMES
+
+MEASURED = ("mass_ratio", "b_over_a", "c_over_a", "bulk_density")
+"""Outcomes that are compared."""
+
+DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
+"""Outcomes that would be 0 without error."""
+
+RESOLUTION = ("none", "particles")
+"""Knobs of the cases that differ in resolution alone."""
+
+_INTERVAL = "half the width of the 95 % confidence interval, Student's t over seeds"
+_ALONE = "a case of one seed is taken to scatter like the one it is compared with"
+_RESOLVED = "1 where the difference exceeds the interval that the seeds of both cases leave it, 0 where not"
+
+
+def accuracy(results: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
+    """What every case with a finished run gives, how that differs from the base and the finest case, what it costs.
+
+    Args:
+        results: the results of a campaign, dimensions case and seed.
+        cases: the setting that each case turns.
+    """
+    done = results.sel(case=(results["state"] == "done").any("seed").values)
+    finest = _finest([str(name) for name in done["case"].values], cases)
+    found = _described(done, cases)
+    for name in MEASURED:
+        found = found.assign(_mean(done[name]))
+        for role, other in {"base": BASE, "finest": finest}.items():
+            found = found.assign(_change(done[name], other, role))
+    for name in (*DRIFTS, "cpu_time", "steps"):
+        found = found.assign(_mean(abs(done[name]).assign_attrs(done[name].attrs)))
+    return found.assign(orders(found, finest)).assign_attrs(finest=finest)
+
+
+def _described(done: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
+    chosen = [cases[str(name)] for name in done["case"].values]
+    spacing = np.array([(4.0 * np.pi / 3.0 / case.particles) ** (1.0 / 3.0) for case in chosen])
+    runs = count(done["mass_ratio"]).assign_attrs(long_name="runs that are done", units="1")
+    return xr.Dataset(
+        {"runs": runs},
+        coords={
+            "case": ("case", [str(name) for name in done["case"].values], {"long_name": "name of the case"}),
+            "knob": ("case", [case.knob for case in chosen], {"long_name": "setting that differs from the base"}),
+            "value": ("case", [str(case.value) for case in chosen], {"long_name": "value of that setting"}),
+            "particles": ("case", [case.particles for case in chosen], {"long_name": "particles a body", "units": "1"}),
+            "spacing": ("case", spacing, {"long_name": "particle spacing in radii of the target", "units": "1"}),
+        },
+        attrs={"Conventions": "CF-1.11", "title": "Accuracy and cost of numerical settings", **_origin(done)},
+    )
+
+
+def _origin(done: xr.Dataset) -> dict[str, object]:
+    """What all runs share: the attributes of the campaign, and parameters of which all have one value."""
+    known = {str(name): values.values[values.notnull().values] for name, values in done.coords.items()}
+    return {**done.attrs, **{name: values[0] for name, values in known.items() if len(np.unique(values)) == 1}}
+
+
+def _finest(names: list[str], cases: dict[str, Case]) -> str:
+    return max((name for name in names if cases[name].knob in RESOLUTION), key=lambda name: cases[name].particles)
+
+
+def _mean(values: xr.DataArray) -> dict[str, xr.DataArray]:
+    name, variable = str(values.name), OUTCOMES[str(values.name)]
+    size = "mean of the size over seeds" if name in DRIFTS else "mean over seeds"
+    about = {"long_name": f"interval of the {variable.long_name}", "units": variable.units, "comment": _INTERVAL}
+    return {
+        name: values.mean("seed").assign_attrs({**variable.attributes(), "comment": size}),
+        f"{name}_interval": interval(values).assign_attrs(about),
+    }
+
+
+def _change(values: xr.DataArray, other: str, role: str) -> dict[str, xr.DataArray]:
+    """Difference of every case to another one, which itself has none."""
+    reference = values.sel(case=other, drop=True)
+    elsewhere = values["case"] != other
+    change, half = difference(values, reference)
+    name, variable = f"{values.name}_minus_{role}", OUTCOMES[str(values.name)]
+    long_name = f"{variable.long_name}, minus that of the {role} case"
+    units = {"units": variable.units}
+    return {
+        name: change.where(elsewhere).assign_attrs(long_name=long_name, **units),
+        f"{name}_interval": half.where(elsewhere).assign_attrs(
+            long_name=f"interval of the {long_name}", comment=f"{_INTERVAL}; {_ALONE}", **units
+        ),
+        f"{name}_resolved": resolved(values, reference)
+        .where(elsewhere)
+        .assign_attrs(long_name=f"resolved: {long_name}", units="1", comment=_RESOLVED),
+    }

@@ -1,0 +1,121 @@
+"""The tables of accuracy in Markdown, and all products in their files."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import xarray as xr
+
+from analysis.accuracy.cases import cases
+from analysis.accuracy.figure import error_against_cost
+from analysis.accuracy.measure import DRIFTS, MEASURED, accuracy
+from analysis.campaign import read_campaign
+from analysis.collect import collect
+from analysis.figures.style import save
+from engine.errors import SceneError
+from engine.storage import write_atomically, write_dataset
+
+HEADS = {"mass_ratio": "M_lr/M_t", "b_over_a": "b/a", "c_over_a": "c/a", "bulk_density": "density [kg/m3]"}
+DECIMALS = {"mass_ratio": 3, "b_over_a": 3, "c_over_a": 3, "bulk_density": 0}
+
+
+def report(campaign_directory: Path) -> tuple[str, list[Path]]:
+    """Write accuracy.nc, accuracy.png and accuracy.md into a campaign's directory; returns the text and the files.
+
+    Raises:
+        SceneError: the campaign is none of cases with several seeds around a base, or its base has no finished run.
+    """
+    known = cases(read_campaign(campaign_directory))
+    results = collect(campaign_directory)
+    if not (results["state"].sel(case="base") == "done").any():
+        raise SceneError(f"{campaign_directory}: no run of the case 'base' is done yet; run the campaign first")
+    found = accuracy(results, known)
+    text = markdown(found, len(results["case"]))
+    files = [campaign_directory / f"accuracy.{kind}" for kind in ("nc", "png", "md")]
+    write_dataset(files[0], found)
+    save(error_against_cost(found), files[1])
+
+    def write(partial: Path) -> None:
+        partial.write_text(text, encoding="utf-8")
+
+    write_atomically(files[2], write)
+    return text, files
+
+
+def markdown(found: xr.Dataset, planned: int) -> str:
+    """Values, differences to base and finest case, drifts, and observed orders.
+
+    Args:
+        found: accuracy of all cases.
+        planned: number of cases of the campaign.
+    """
+    finest, left_out = found.attrs["finest"], planned - found.sizes["case"]
+    missing = f" {left_out} cases of the study have no finished run and are left out." if left_out else ""
+    bold = "Bold is resolved: larger than its interval; the rest is not resolved from 0."
+    parts = [
+        f"Means over seeds +- half the width of their 95 % confidence interval.{missing}\n\n{_values(found)}",
+        f"Difference to the base. {bold}\n\n{_changes(found, 'base')}",
+        f"Difference to the finest case, {finest}. {bold}\n\n{_changes(found, 'finest')}",
+        f"Size of the relative change of what is conserved, mean over seeds.\n\n{_drifts(found)}",
+        "Observed orders in particle spacing, from one number of particles to the next; a dash where seeds do not "
+        f"resolve both errors or no order fits. Drifts count from 0.\n\n{_orders(found)}",
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _values(found: xr.Dataset) -> str:
+    rows = [
+        [
+            name,
+            f"{int(case['runs'])}",
+            *(_number(case, key) for key in MEASURED),
+            f"{float(case['steps']):,.0f}",
+            f"{float(case['cpu_time']):.0f}",
+        ]
+        for name, case in _each(found)
+    ]
+    return _table(["case", "runs", *HEADS.values(), "steps", "CPU time [s]"], rows)
+
+
+def _changes(found: xr.Dataset, role: str) -> str:
+    rows = [
+        [name, *(_number(case, f"{key}_minus_{role}", DECIMALS[key], "+") for key in MEASURED)]
+        for name, case in _each(found)
+        if case[f"mass_ratio_minus_{role}"].notnull()
+    ]
+    return _table(["case", *HEADS.values()], rows)
+
+
+def _drifts(found: xr.Dataset) -> str:
+    rows = [[name, *(f"{float(case[key]):.2g}" for key in DRIFTS)] for name, case in _each(found)]
+    return _table(["case", "mass", "momentum", "angular momentum", "energy"], rows)
+
+
+def _orders(found: xr.Dataset) -> str:
+    names = [str(name) for name in found if str(name).startswith("order_")]
+    heads = [name.removeprefix("order_").replace("_", " ") for name in names]
+    rows = [
+        [str(step), *(_plain(float(found[name].sel(refinement=step)), 1) for name in names)]
+        for step in found["refinement"].values
+    ]
+    return _table(["particles", *heads], rows)
+
+
+def _each(found: xr.Dataset) -> Iterable[tuple[str, xr.Dataset]]:
+    return ((str(name), found.sel(case=name)) for name in found["case"].values)
+
+
+def _number(case: xr.Dataset, name: str, decimals: int | None = None, sign: str = "") -> str:
+    """Value +- interval, bold where it is resolved."""
+    decimals = DECIMALS[name] if decimals is None else decimals
+    value, half = float(case[name]), float(case[f"{name}_interval"])
+    text = f"{value:{sign},.{decimals}f}" + (f" +- {half:.{decimals}f}" if half == half else "")
+    return f"**{text}**" if f"{name}_resolved" in case and float(case[f"{name}_resolved"]) == 1.0 else text
+
+
+def _plain(value: float, decimals: int) -> str:
+    return f"{value:.{decimals}f}" if value == value else "-"
+
+
+def _table(heads: list[str], rows: list[list[str]]) -> str:
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
