@@ -8,6 +8,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
 from analysis.accuracy.measure import MEASURED
 from analysis.figures.style import GREY, MARKERS
@@ -27,6 +28,7 @@ def error_against_cost(found: xr.Dataset) -> Any:
     knobs = list(dict.fromkeys(str(knob) for knob in found["knob"].values))
     looks = dict(zip(knobs, zip(plt.get_cmap("tab10").colors, cycle(MARKERS), strict=False), strict=False))
     for axes, name in zip(panels.flat, MEASURED, strict=True):
+        axes.set(xscale="log", yscale="log")
         _panel(axes, errors(found, name), looks)
         axes.set_title(TITLES.get(name, f"bulk density [{OUTCOMES[name].units}]"))
     figure.supxlabel("CPU time of a run [s]", fontsize=9)
@@ -44,12 +46,16 @@ def errors(found: xr.Dataset, name: str) -> pd.DataFrame:
 
 
 def _panel(axes: Any, runs: pd.DataFrame, looks: dict[str, Any]) -> None:
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.set_minor_formatter(NullFormatter())
     front = pareto(runs)
-    axes.loglog(front["cpu_time"], front["error"], "--", color=GREY, linewidth=1.0, zorder=1)
+    axes.plot(front["cpu_time"], front["error"], "--", color=GREY, linewidth=1.0, zorder=1)
     for _, run in runs.iterrows():
         colour, marker = looks[run["knob"]]
         face = colour if run["resolved"] else "white"
-        axes.loglog(run["cpu_time"], run["error"], marker=marker, color=colour, markerfacecolor=face, linestyle="none")
+        axes.plot(run["cpu_time"], run["error"], marker=marker, color=colour, markerfacecolor=face, linestyle="none")
         label = "base" if run["knob"] == "none" else run["value"].removesuffix(".0")
         axes.annotate(label, (run["cpu_time"], run["error"]), (3, 3), textcoords="offset points", fontsize=6.5)
 
