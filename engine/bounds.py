@@ -70,7 +70,7 @@ def energy_growth(scene: Scene, row: Row, start: Row) -> float:
 
 def _rounding(scene: Scene, start: Row) -> float:
     """Energy [J] that is nothing: the last digit of what waves carry, for scenes that start without any."""
-    speed = max(body.material.longitudinal_speed for body in scene.bodies)
+    speed = max(material.longitudinal_speed for material in scene.materials)
     return float(np.finfo(np.float64).eps) * float(start["mass"]) * speed**2
 
 

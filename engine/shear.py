@@ -22,15 +22,27 @@ from engine.tensors import (
     unpack,
 )
 
+SMALL_GROWTH = 0.1
+"""Change of volume in one step up to which its powers come from a series."""
+
+
+@ti.func
+def isochoric(growth):
+    """(1 + growth)^(-2/3) - 1: to third order in a small growth, and exactly where that would turn negative."""
+    result = -growth * (2.0 / 3.0 - growth * (5.0 / 9.0 - growth * (40.0 / 81.0)))
+    if ti.abs(growth) > SMALL_GROWTH:
+        result = ti.pow(1.0 + growth, -2.0 / 3.0) - 1.0
+    return result
+
 
 @ti.func
 def deform(B, j, A):
     """Trial strain after the displacement gradient A = dt L.
 
-    The isotropic part of I + B carries no stress; the factor, det(I + A)^(-2/3) to third order, keeps it near one.
+    The isotropic part of I + B carries no stress; the factor det(I + A)^(-2/3) keeps it near one.
     """
     growth = determinant_increment(A)
-    excess = -growth * (2.0 / 3.0 - growth * (5.0 / 9.0 - growth * (40.0 / 81.0)))
+    excess = isochoric(growth)
     C = unpack(B)
     AC = A @ C
     increment = A + A.transpose() + AC + AC.transpose() + A @ (identity() + C) @ A.transpose()

@@ -14,7 +14,7 @@ import taichi.math as tm
 from engine.backend import TASK, Real, capacity, mat3, on_gpu, overwrite, vec3, vec4
 from engine.blocks import Blocks
 from engine.clock import FAULT_INVERTED, Clock
-from engine.tensors import identity, norm_squared, symmetric, unpack
+from engine.tensors import determinant_increment, identity, norm_squared, symmetric, unpack
 
 SPAN = 8
 """Nodes along an edge of a block's copy."""
@@ -29,6 +29,10 @@ ALONE = 1e-14
 
 The smaller of both masses at a node bounds the momentum they can exchange there, so that none is lost with them.
 """
+
+
+ROUNDING = 1e-9
+"""Relative difference of energies that are equal but for round-off."""
 
 
 @ti.func
@@ -238,7 +242,7 @@ class Transfer:
         dx, dt = self.dx[None], self.clock.dt[None]
         self.particles.x[p] += dt * v
         self.particles.v[p] = v
-        self.particles.C[p] = affine_velocity(L, dt)
+        self.particles.C[p] = affine_velocity(L, dt, self.particles.j[p])
         c, diffusivity = self.constitution.update(p, L, dt)
         if not self.particles.j[p] > -1.0 or tm.isinf(self.particles.j[p]):
             self.clock.report_fault(FAULT_INVERTED, p)
@@ -274,7 +278,20 @@ def corner_offset(corner):
 
 
 @ti.func
-def affine_velocity(L, dt):
-    """Affine velocity after a step: exact in isotropic expansion, and its skew part keeps angular momentum."""
-    A = (identity() + dt * L).inverse()
-    return symmetric(L @ A) + 0.5 * (L - L.transpose())
+def affine_velocity(L, dt, j):
+    """Affine velocity after a step: exact in isotropic flow, and its skew part keeps angular momentum.
+
+    sym(L (I + dt L)^-1) grows in compression without bound, also where nothing flows together, and with it the energy.
+    It may regain what it lost while matter was dilated: |sym C| max(J, 1)^(1/3) never grows; where it would, sym(L)
+    takes its place.
+
+    Args:
+        L: velocity gradient [1/s].
+        dt: time step [s].
+        j: det F - 1 before the step [-].
+    """
+    C, J = symmetric(L @ (identity() + dt * L).inverse()), 1.0 + j
+    dilation = ti.max(J * (1.0 + determinant_increment(dt * L)), 1.0) / ti.max(J, 1.0)
+    if not dilation**2 * norm_squared(C) ** 3 <= (1.0 + ROUNDING) * norm_squared(symmetric(L)) ** 3:
+        C = symmetric(L) / ti.max(dilation, 1.0) ** (1.0 / 3.0)
+    return C + 0.5 * (L - L.transpose())

@@ -7,8 +7,8 @@ OPERATIONS = {
     "update_grid": 20,
     # 27 nodes: weight 2, weighted node 4, sum 4, outer product with the offset 21, mass shared with others 4
     "grid_to_particles": 27 * 35 + 60,
-    # (I + dt L)^-1, products and symmetric parts
-    "affine_velocity": 130,
+    # (I + dt L)^-1, products and symmetric parts, det(I + dt L) - 1 and two norms
+    "affine_velocity": 215,
     # det(I + A) - 1 and four products of 3x3 matrices
     "deform": 220,
     # an inverse, two products, 14 terms of the series

@@ -104,3 +104,17 @@ def test_simple_shear_gives_exactly_gamma_and_its_square():
     repeat(A, 1, B, j)
     assert np.array_equal(j, np.zeros(3))
     assert worst(B, np.stack([gamma**2, *np.zeros((4, 3)), gamma], axis=1), gamma) < 1e-15
+
+
+@pytest.mark.parametrize("growth", [-0.9, -0.3, 0.09, 0.11, 1.0, 1.3, 20.0])
+def test_a_single_large_step_keeps_a_strain_that_has_a_logarithm(growth):
+    """An isotropic step of any size leaves no shear, and one with shear leaves the shear of F F^T."""
+    stretch = (1.0 + growth) ** (1.0 / 3.0)
+    F = stretch * np.array([[1.1, 0.2, 0.0], [0.0, 1.0 / 1.1, 0.0], [0.0, 0.0, 1.0]])
+    A, B, j = np.array([stretch * np.eye(3), F]) - np.eye(3), np.zeros((2, 6)), np.zeros(2)
+    repeat(A, 1, B, j)
+    found = np.zeros((2, 3, 3))
+    deviatoric_log(B, found)
+    expected = traceless(log_strain(A))
+    assert worst(found, expected, 1.0) < 1e-14
+    assert worst(j, np.full(2, growth), 1.0 + growth) < 1e-14

@@ -6,7 +6,7 @@ import pytest
 from engine.body import Box
 from engine.initial import initial_state
 from engine.scene import Numerics, Physics, Scene
-from tests.engine.device import Array, traceless, worst
+from tests.engine.device import Array, norm, traceless, worst
 from tests.engine.moving import advance, body, one_step, rubble_collision, scene, spline, started
 from tests.engine.oracle import RHO0
 
@@ -19,11 +19,14 @@ def lengths(vectors: Array) -> Array:
     return np.asarray(np.sqrt((vectors**2).sum(axis=1)))
 
 
-def affine_velocity(L: Array, dt: float) -> Array:
-    """C = sym(L (I + dt L)^-1) + skew(L)."""
-    stretched = L @ np.linalg.inv(np.eye(3) + dt * L)
+def affine_velocity(L: Array, dt: float, j: Array) -> Array:
+    """C = sym(L (I + dt L)^-1) + skew(L), unless that raises |sym C| max(J, 1)^(1/3)."""
     transposed = (0, 2, 1)
-    return 0.5 * (stretched + stretched.transpose(transposed) + L - L.transpose(transposed))
+    stretched = L @ np.linalg.inv(np.eye(3) + dt * L)
+    C, plain, skew = (0.5 * (S + sign * S.transpose(transposed)) for S, sign in ((stretched, 1), (L, 1), (L, -1)))
+    growth = (np.maximum((1.0 + j) * np.linalg.det(np.eye(3) + dt * L), 1.0) / np.maximum(1.0 + j, 1.0)) ** (1.0 / 3.0)
+    gains = growth * norm(C) > (1.0 + 1e-10) * norm(plain)
+    return np.asarray(np.where(gains[:, None, None], plain / np.maximum(growth, 1.0)[:, None, None], C) + skew)
 
 
 def dense_step(state: dict[str, Array], dx: float, dt: float) -> dict[str, Array]:
@@ -50,7 +53,7 @@ def dense_step(state: dict[str, Array], dx: float, dt: float) -> dict[str, Array
         alone[p] = all(users[node] == {p} for node in map(tuple, nodes))
     v[alone] = (state["v"] + dt * state["acceleration"])[alone]
     spin = 0.5 * (state["C"] - state["C"].transpose(0, 2, 1))
-    C = np.where(alone[:, None, None], spin, affine_velocity(L, dt))
+    C = np.where(alone[:, None, None], spin, affine_velocity(L, dt, state["j"]))
     return {"x": state["x"] + dt * v, "v": v, "C": C, "alone": alone}
 
 
@@ -67,6 +70,7 @@ def test_one_step_equals_a_dense_grid(spread):
         "tau": 1e8 * generator.normal(size=(count, 6)),
         "acceleration": generator.normal(size=(count, 3)),
         "mass": 1e17 * generator.uniform(0.5, 2.0, count),
+        "j": generator.uniform(-0.5, 1.0, count),
     }
     simulation = started(given, **state)
     expected = dense_step(state, given.dx, one_step(simulation))
@@ -88,7 +92,7 @@ def test_a_linear_velocity_field_is_reproduced():
     found = simulation.particles.read("v", "C", "j")
     assert worst(found["v"], v0 + x @ A.T, 300.0) < 1e-14
     # round-off of a gradient: 1e-16 v/dx
-    assert worst(found["C"], np.tile(affine_velocity(A[None], dt), (300, 1, 1)), 300.0 / given.dx) < 1e-14
+    assert worst(found["C"], np.tile(affine_velocity(A[None], dt, np.zeros(1)), (300, 1, 1)), 300.0 / given.dx) < 1e-14
     assert worst(found["j"], np.full(300, np.linalg.det(np.eye(3) + dt * A) - 1.0), 1.0) < 1e-14
 
 

@@ -134,7 +134,7 @@ def test_the_affine_velocity_of_the_talk_gains_angular_momentum(monkeypatch):
     """C = L (I + dt L)^-1 in full, the published form, breaks what ours keeps."""
 
     @ti.func
-    def published(L, dt):
+    def published(L, dt, j):
         return L @ (ti.Matrix.identity(ti.f64, 3) + dt * L).inverse()
 
     monkeypatch.setattr("engine.transfer.affine_velocity", published)

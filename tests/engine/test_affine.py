@@ -1,0 +1,73 @@
+"""The affine velocity of a particle: exact where it can be, and never a source of energy."""
+
+import numpy as np
+import pytest
+import taichi as ti
+
+from engine.backend import mat3
+from engine.transfer import affine_velocity
+from tests.engine.device import Array, worst
+from tests.engine.moving import advance, body, scene, started
+
+pytestmark = pytest.mark.usefixtures("taichi")
+
+Matrices = ti.types.ndarray(dtype=mat3, ndim=1)
+Scalars = ti.types.ndarray(dtype=ti.f64, ndim=1)
+
+
+@ti.kernel
+def affine(L: Matrices, dt: ti.f64, j: Scalars, result: Matrices):
+    for p in range(L.shape[0]):
+        result[p] = affine_velocity(L[p], dt, j[p])
+
+
+def after_step(L: Array, dt: float, j: Array) -> Array:
+    result = np.zeros_like(L)
+    affine(L, dt, j, result)
+    return result
+
+
+def strain_rate_energy(C: Array, J: Array) -> Array:
+    """|sym C|^2 max(J, 1)^(2/3) [1/s^2]."""
+    square = np.sum((0.5 * (C + C.transpose(0, 2, 1))) ** 2, axis=(1, 2))
+    return np.asarray(square * np.maximum(J, 1.0) ** (2.0 / 3.0))
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e-2, 0.1, 0.3, 0.9])
+def test_no_step_raises_the_energy_of_strain_rates(size):
+    generator, count = np.random.default_rng(1), 3000
+    L = size * generator.uniform(-1.0, 1.0, (count, 3, 3))
+    L[::3] *= np.eye(3)
+    j = generator.uniform(-0.8, 5.0, count)
+    J = (1.0 + j) * np.linalg.det(np.eye(3) + L)
+    found = after_step(L, 1.0, j)
+    assert (strain_rate_energy(found, J) <= (1.0 + 1e-8) * strain_rate_energy(L, 1.0 + j)).all()
+    skew = 0.5 * (L - L.transpose(0, 2, 1))
+    assert worst(0.5 * (found - found.transpose(0, 2, 1)), skew, size) < 1e-15
+
+
+@pytest.mark.parametrize(("rate", "j"), [(0.2, 0.0), (0.2, -0.5), (0.2, 7.0), (-0.2, 7.0)])
+def test_isotropic_flow_is_exact_while_matter_is_dilated(rate, j):
+    """Velocity H r: H becomes H/(1 + H t)."""
+    found = after_step(rate * np.eye(3)[None], 1.0, np.array([j]))
+    assert worst(found, rate / (1.0 + rate) * np.eye(3)[None], rate) < 1e-15
+
+
+def test_compression_of_dense_matter_does_not_feed_on_itself():
+    L = np.array([np.diag([-0.2, -0.2, -0.2]), np.diag([-0.2, 0.0, 0.0]), np.diag([-0.2, 0.05, 0.05])])
+    assert np.array_equal(after_step(L, 1.0, np.zeros(3)), L)
+
+
+def test_a_thin_sheet_that_closes_does_not_gain_energy():
+    """One layer of rubble has a rate of thinning that no particles' motion carries: it must not run away."""
+    rate = -1e-3
+    count = 100
+    given = scene(body(particles=count), end_time=4.0 / abs(rate))
+    generator = np.random.default_rng(1)
+    x = 50e3 * generator.uniform(-1.0, 1.0, (count, 3)) * [3.0, 3.0, 0.0]
+    C = np.tile(np.diag([0.0, 0.0, rate]), (count, 1, 1))
+    simulation = started(given, x=x, C=C, v=np.zeros((count, 3)), j=np.full(count, 3.0))
+    before = simulation.totals()
+    while not simulation.finished:
+        advance(simulation, simulation.step + 100)
+        assert simulation.totals().total_energy <= (1.0 + 1e-9) * before.total_energy
