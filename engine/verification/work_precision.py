@@ -9,6 +9,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
 from engine.verification.knobs import TRADEOFFS
 from engine.verification.pareto import pareto
@@ -29,18 +30,26 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
         axes.set_axis_off()
     knobs = {line.get_label(): line for axes in panels.flat for line in axes.get_lines()}
     figure.legend(knobs.values(), knobs.keys(), loc="outside lower center", ncols=COLUMNS)
-    figure.savefig(path, dpi=90)
+    figure.savefig(path, dpi=80)
     plt.close(figure)
 
 
 def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:
+    axes.set(xscale="log", yscale="log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.set_minor_formatter(NullFormatter())
+    axes.tick_params(labelsize=7)
     for knob, group in runs.groupby("knob", sort=True):
         ordered = group.assign(number=group["value"].astype(float)).sort_values("number")
-        axes.loglog(ordered["cpu_time"], ordered["error"], ".-", color=_color(str(knob)), label=str(knob))
+        label = str(knob) if "." in str(knob) else "particles, cells or steps"
+        axes.plot(ordered["cpu_time"], ordered["error"], ".-", color=_color(str(knob)), label=label)
     front = pareto(runs)
-    axes.loglog(front["cpu_time"], front["error"], "--", color="0.4", lw=2.5, zorder=0, label="no run beats these")
-    axes.set_title(f"{name}: {TRADEOFFS[name].quantity}", fontsize=7)
-    axes.set(xlabel="CPU time [s]", ylabel="error")
+    axes.plot(front["cpu_time"], front["error"], "--", color="0.4", lw=2.5, zorder=0, label="no run beats these")
+    axes.set_title(name, fontsize=9)
+    axes.set_xlabel("CPU time [s]", fontsize=8)
+    axes.set_ylabel(TRADEOFFS[name].quantity, fontsize=7)
 
 
 def _color(knob: str) -> str:
