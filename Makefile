@@ -17,7 +17,7 @@ RESOURCES = $(if $(WORKERS),--workers $(WORKERS)) $(if $(THREADS),--threads-per-
 THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; exit $$code
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign resume plan status plots accuracy test test-slow bench lint clean
+.PHONY: help install campaign resume plan status plots accuracy test test-slow bench bench-gravity lint clean
 
 help: ## explain all targets
 	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
@@ -59,6 +59,10 @@ test-slow: $(INSTALLED) ## run the tests that take minutes
 
 bench: $(INSTALLED) ## time the engine and compare it with the usual way and the machine's limits
 	@$(RUN) tests.benchmarks --out '$(RUNS)/bench.json'
+
+bench-gravity: $(INSTALLED) ## compare gravity with pytreegrav and rebound, which it installs; half an hour
+	@$(RUN) pip install --quiet --disable-pip-version-check --editable '.[dev,bench]'
+	@$(RUN) tests.benchmarks.gravity --out '$(RUNS)/bench-gravity'
 
 lint: $(INSTALLED) ## check style and types
 	$(RUN) ruff check .

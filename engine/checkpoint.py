@@ -15,7 +15,7 @@ from engine.storage import is_finite, read_dataset, write_dataset
 CLOCK = {"time": float, "dt": float, "rate": float, "step": int, "moved_out": int}
 """Fields of the clock that outlive a pause."""
 
-EVENTS = ("gravity_due", "gravity_change")
+EVENTS = ("gravity_due", "gravity_change", "gravity_force", "gravity_torque")
 """Attributes of the simulation that do."""
 
 

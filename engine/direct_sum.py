@@ -6,10 +6,7 @@ import numpy as np
 import taichi as ti
 
 from engine.backend import TASK, on_gpu
-from engine.gravity import Places, SelfGravity, Vectors
-
-GROUP = 64
-"""Targets that one CPU thread serves in one pass over the sources: their sums stay in the nearest cache."""
+from engine.gravity import LANES, Places, SelfGravity, Vectors
 
 
 @ti.data_oriented
@@ -17,24 +14,22 @@ class DirectSum(SelfGravity):
     """Sum over all pairs; arguments as `SelfGravity`."""
 
     def __init__(self, particles: Any, radius: float) -> None:
-        super().__init__(particles, radius, particles.count)
-        self.group, self.task = (1, 1) if on_gpu() else (GROUP, TASK)
+        super().__init__(particles, radius, -(-particles.count // LANES) * LANES)
+        self.task = 1 if on_gpu() else TASK
 
     def arrange(self, x: Vectors) -> Places:
-        """Any order will do."""
-        return np.arange(len(x))
+        """Any order will do; the last row is filled up."""
+        return np.concatenate([np.arange(len(x)), np.full(-len(x) % LANES, ~0)])
 
-    def solve(self) -> None:
+    def solve(self, potential: bool) -> None:
         """Sum over all pairs, sources always in the same order."""
-        self.sum_pairs(self.count)
+        self.sum_pairs(self.count, potential)
 
     @ti.kernel
-    def sum_pairs(self, count: ti.i32):
-        """Acceleration and potential of every particle."""
-        for t in range((count + self.group - 1) // self.group * self.task):
-            if t % self.task == 0:
-                first = t // self.task * self.group
-                last = ti.min(first + self.group, count)
-                self.clear(first, last)
-                for q in range(count):
-                    self.add_ball(q, first, last)
+    def sum_pairs(self, count: ti.i32, potential: ti.template()):
+        """Acceleration or potential of every particle."""
+        for i in range((count + self.lanes - 1) // self.lanes * self.task):
+            if i % self.task == 0:
+                t = i // self.task * self.lanes
+                self.clear(t, potential)
+                self.add_balls(0, count, t, potential)

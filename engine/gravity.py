@@ -7,8 +7,12 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.backend import Real, capacity, overwrite
+from engine.backend import Real, capacity, on_gpu, overwrite
+from engine.net_effect import NetEffect, without_net_effect
 from engine.orbit import G
+
+LANES = 8
+"""Targets that one CPU thread serves at once: as many doubles as the widest registers hold."""
 
 Vectors = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -18,13 +22,14 @@ Places = NDArray[np.int64]
 class SelfGravity(ABC):
     """Pull of every particle, taken as a homogeneous ball of one radius, on every other.
 
-    `x`, `y`, `z`, `mu` (G times mass) hold the particles in an order that suits the solver; `ax`, `ay`, `az` and
-    `potential` receive its result, one component a field so that loops over targets run through memory in step.
+    `x`, `y`, `z`, `mu` (G times mass) hold the particles in an order that suits the solver; `ax`, `ay`, `az` or
+    `potential` receive its result. All are one component a field: a row of targets is then one piece of memory, and
+    their sums stay in registers.
 
     Args:
         particles: state of the particles.
         radius: radius of the ball [m]: the field is Newton's outside and linear inside.
-        places: places for particles that the solver uses; at least their number.
+        places: places for particles that the solver uses, a multiple of LANES.
     """
 
     def __init__(self, particles: Any, radius: float, places: int) -> None:
@@ -35,25 +40,33 @@ class SelfGravity(ABC):
         shape = capacity(places)
         self.x, self.y, self.z, self.mu = (ti.field(Real, shape) for _ in range(4))
         self.ax, self.ay, self.az, self.potential = (ti.field(Real, shape) for _ in range(4))
+        self.lanes = 1 if on_gpu() else LANES
+        self.row = ti.types.vector(self.lanes, Real)
 
     @abstractmethod
     def arrange(self, x: Vectors) -> Places:
-        """Which particle goes to each place, or -1 for none.
+        """Which particle goes to each place; ~p is a place for no particle, at the position of particle p.
 
         Args:
             x: positions [m], shape [particle_count, 3].
         """
 
     @abstractmethod
-    def solve(self) -> None:
-        """Fill acceleration and potential from positions and mu."""
+    def solve(self, potential: bool) -> None:
+        """Fill the potential, or else the acceleration, from positions and mu."""
 
-    def accelerate(self, ahead: float) -> None:
-        """Set every particle's acceleration to the pull at positions a time `ahead` [s] of now."""
+    def accelerate(self, ahead: float) -> NetEffect:
+        """Set every particle's acceleration to the pull at positions a time `ahead` [s] of now.
+
+        Returns:
+            What had to be taken out so that the pull has no net force and no net torque.
+        """
         state = self.particles.read("x", "v", "mass")
         x = state["x"] + ahead * state["v"]
         pull = self._evaluate(x, state["mass"], self.ax, self.ay, self.az)
-        self.particles.write({"acceleration": without_net_effect(pull, x, state["mass"])})
+        acceleration, taken_out = without_net_effect(pull, x, state["mass"])
+        self.particles.write({"acceleration": acceleration})
+        return taken_out
 
     def pull(self, ahead: float) -> Vectors:
         """Acceleration [m/s^2] at positions a time `ahead` [s] of now, shape [particle_count, 3]."""
@@ -68,59 +81,75 @@ class SelfGravity(ABC):
 
     def _evaluate(self, x: Vectors, mass: Vectors, *wanted: ti.Field) -> Vectors:
         """The wanted results of a solution, in the order of the particles."""
-        particle = self.arrange(x)
-        taken = particle >= 0
-        sources = (*x[np.maximum(particle, 0)].T, np.where(taken, G * mass[particle], 0.0))
+        places = self.arrange(x)
+        taken = places >= 0
+        particle = np.where(taken, places, ~places)
+        sources = (*x[particle].T, np.where(taken, G * mass[particle], 0.0))
         for field, values in zip((self.x, self.y, self.z, self.mu), sources, strict=True):
             overwrite(field, values)
-        self.solve()
-        result = np.empty((self.count, len(wanted)))
-        for column, field in enumerate(wanted):
-            result[particle[taken], column] = field.to_numpy()[: len(particle)][taken]
-        return result
+        self.solve(potential=self.potential in wanted)
+        place_of = np.empty(self.count, dtype=np.int64)
+        place_of[particle[taken]] = np.flatnonzero(taken)
+        return np.stack([field.to_numpy()[place_of] for field in wanted], axis=1)
 
     @ti.func
     def at(self, p):
         """Acceleration of particle p [m/s^2], held since it was last set."""
         return self.acceleration[p]
 
-    @ti.func
-    def clear(self, first, last):
-        """Forget the sums of a range of targets, less the share of each particle's own ball that will be added."""
-        for p in range(first, last):
-            self.ax[p], self.ay[p], self.az[p] = 0.0, 0.0, 0.0
-            self.potential[p] = 1.5 * self.mu[p] / self.radius[None]
+    def load(self, values: ti.template(), t):
+        """The values of the row of targets that begins at t."""
+        return self.row([values[t + i] for i in range(self.lanes)])
 
     @ti.func
-    def add_ball(self, q, first, last):
-        """Add the pull of particle q to a range of targets."""
-        x, y, z, mu = self.x[q], self.y[q], self.z[q], self.mu[q]
+    def store(self, values: ti.template(), t, row):
+        """Set the values of the row of targets that begins at t."""
+        for i in ti.static(range(self.lanes)):
+            values[t + i] = row[i]
+
+    @ti.func
+    def clear(self, t, potential: ti.template()):
+        """Forget the sums of a row of targets; their own balls, which will be added, do not count."""
+        if ti.static(potential):
+            self.store(self.potential, t, 1.5 / self.radius[None] * self.load(self.mu, t))
+        else:
+            for field in ti.static((self.ax, self.ay, self.az)):
+                self.store(field, t, self.row(0.0))
+
+    @ti.func
+    def add_balls(self, first, last, t, potential: ti.template()):
+        """Add the pull or the potential of the particles in some places to a row of targets."""
+        if ti.static(potential):
+            self.add_ball_potential(first, last, t)
+        else:
+            self.add_ball_pull(first, last, t)
+
+    @ti.func
+    def add_ball_pull(self, first, last, t):
+        """Newton's pull outside, linear inside."""
+        X, Y, Z = self.load(self.x, t), self.load(self.y, t), self.load(self.z, t)
+        ax, ay, az = self.load(self.ax, t), self.load(self.ay, t), self.load(self.az, t)
         ball = self.radius[None] ** 2
-        for p in range(first, last):
-            dx, dy, dz = x - self.x[p], y - self.y[p], z - self.z[p]
+        for q in range(first, last):
+            dx, dy, dz = self.x[q] - X, self.y[q] - Y, self.z[q] - Z
+            square = ti.max(dx * dx + dy * dy + dz * dz, ball)
+            strength = self.mu[q] / (square * ti.sqrt(square))
+            ax += strength * dx
+            ay += strength * dy
+            az += strength * dz
+        self.store(self.ax, t, ax)
+        self.store(self.ay, t, ay)
+        self.store(self.az, t, az)
+
+    @ti.func
+    def add_ball_potential(self, first, last, t):
+        """Inside, 1/r becomes (3 - r^2/R^2) / 2R; outside, the bracket below is one."""
+        X, Y, Z = self.load(self.x, t), self.load(self.y, t), self.load(self.z, t)
+        potential = self.load(self.potential, t)
+        ball = self.radius[None] ** 2
+        for q in range(first, last):
+            dx, dy, dz = self.x[q] - X, self.y[q] - Y, self.z[q] - Z
             square = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / ti.sqrt(ti.max(square, ball))
-            strength = mu * inverse * inverse * inverse
-            self.ax[p] = self.ax[p] + strength * dx
-            self.ay[p] = self.ay[p] + strength * dy
-            self.az[p] = self.az[p] + strength * dz
-            # inside the ball 1/r becomes (3 - r^2/R^2) / 2R; outside the bracket is one
-            self.potential[p] = self.potential[p] - mu * inverse * (1.5 - 0.5 * ti.min(square * inverse * inverse, 1.0))
-
-
-def without_net_effect(pull: Vectors, x: Vectors, mass: Vectors) -> Vectors:
-    """Accelerations without net force and net torque, which no forces between pairs have.
-
-    Of all corrections that achieve this, the rigid motion taken out is the smallest in the mass-weighted mean square.
-
-    Args:
-        pull: accelerations [m/s^2], shape [particle_count, 3].
-        x: positions [m], shape [particle_count, 3].
-        mass: masses [kg], shape [particle_count].
-    """
-    r = x - np.average(x, axis=0, weights=mass)
-    rest = pull - np.average(pull, axis=0, weights=mass)
-    torque = np.sum(mass[:, None] * np.cross(r, rest), axis=0)
-    moments = np.einsum("p,pi,pj->ij", mass, r, r)
-    inertia = np.trace(moments) * np.eye(3) - moments
-    return np.asarray(rest - np.cross(np.linalg.pinv(inertia, hermitian=True) @ torque, r))
+            potential -= self.mu[q] * inverse * (1.5 - 0.5 * ti.min(square * inverse * inverse, 1.0))
+        self.store(self.potential, t, potential)

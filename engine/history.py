@@ -22,6 +22,8 @@ ATTRIBUTES = {
     "gravitational_energy": ("gravitational energy", "J"),
     "total_energy": ("kinetic, affine, internal and gravitational energy; what is lost is numerical dissipation", "J"),
     "gravity_change": ("relative change of gravity over the interval for which it was held", "1"),
+    "gravity_force": ("net force of gravity, which is taken out, over the sum of all forces", "1"),
+    "gravity_torque": ("net torque of gravity, which is taken out, over the sum of forces times distances", "1"),
     "damaged_fraction": ("mean damage of all particles", "1"),
     "isolated": ("particles that share no block with another", "1"),
 }

@@ -157,6 +157,8 @@ class Run:
             step=simulation.step,
             dt=float(simulation.clock.dt[None]),
             gravity_change=simulation.gravity_change,
+            gravity_force=simulation.gravity_force,
+            gravity_torque=simulation.gravity_torque,
             damaged_fraction=float(np.mean(simulation.particles.read("root")["root"] ** 3)),
             isolated=float(simulation.transfer.alone_count[None]),
         )

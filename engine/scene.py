@@ -32,7 +32,7 @@ class Gravity(Frozen):
 
     softening: Positive = 1.0
     interval: Positive = 20.0
-    opening: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
+    opening: Annotated[float, Field(ge=0.0, le=1.0)] = 0.4
 
 
 class Viscosity(Frozen):

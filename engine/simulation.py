@@ -40,7 +40,7 @@ class Simulation:
         self.walls = assembly.walls(scene)
         self._make_room(scene.particles // 8)
         self.gravity_due = scene.start_time if physics.gravity else math.inf
-        self.gravity_change = 0.0
+        self.gravity_change = self.gravity_force = self.gravity_torque = 0.0
 
     @property
     def time(self) -> float:
@@ -115,7 +115,8 @@ class Simulation:
         interval, dt = self.scene.physics.gravity.interval, self.next_dt
         before = self.particles.read("acceleration")["acceleration"]
         # mean time of the kicks that will use it: a step kicks from where particles are when it begins
-        self.gravity.accelerate(ahead=0.5 * dt * (math.ceil(interval / dt) - 1))
+        taken_out = self.gravity.accelerate(ahead=0.5 * dt * (math.ceil(interval / dt) - 1))
+        self.gravity_force, self.gravity_torque = taken_out.force, taken_out.torque
         after = self.particles.read("acceleration")["acceleration"]
         self.gravity_change = float(np.linalg.norm(after - before)) / max(float(np.linalg.norm(after)), 1e-300)
         self.gravity_due = self.time + interval

@@ -4,6 +4,7 @@ import pytest
 from engine.direct_sum import DirectSum
 from engine.particles import Particles
 from engine.sphere import sphere_points
+from engine.tree import Tree
 from tests.engine.device import Array, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -16,9 +17,13 @@ def lengths(vectors: Array) -> Array:
 
 
 def gravity_of(x: Array, mass: Array, radius: float, v: Array | None = None) -> DirectSum:
+    return DirectSum(at(x, mass, v), radius)
+
+
+def at(x: Array, mass: Array, v: Array | None = None) -> Particles:
     particles = Particles(len(x))
     particles.write({"x": x, "mass": mass, "v": np.zeros_like(x) if v is None else v})
-    return DirectSum(particles, radius)
+    return particles
 
 
 def cloud(count: int) -> tuple[Array, Array]:
@@ -86,7 +91,8 @@ def test_forces_are_the_slope_of_the_energy():
         assert -(after - before) / 2.0 == pytest.approx(mass[7] * pull[7, axis], abs=1e-6 * mass[7] * lengths(pull)[7])
 
 
-def test_a_homogeneous_sphere_pulls_linearly_inside_and_as_a_point_outside():
+@pytest.mark.parametrize("opening", [0.0, 0.4])
+def test_a_homogeneous_sphere_pulls_linearly_inside_and_as_a_point_outside(opening):
     R, rho, count = 50e3, 2700.0, 4000
     M, h = rho * 4.0 / 3.0 * np.pi * R**3, R * (4.0 / 3.0 * np.pi / count) ** (1.0 / 3.0)
     sphere = sphere_points(count, R, np.random.default_rng(1))
@@ -96,7 +102,8 @@ def test_a_homogeneous_sphere_pulls_linearly_inside_and_as_a_point_outside():
     probes *= (r / lengths(probes))[:, None]
     x = np.concatenate([sphere, probes])
     mass = np.concatenate([np.full(count, M / count), np.zeros(400)])
-    a = gravity_of(x, mass, h).pull(0.0)[count:]
+    solver = Tree(at(x, mass), h, opening) if opening else DirectSum(at(x, mass), h)
+    a = solver.pull(0.0)[count:]
     expected = -G_N * M * probes / np.maximum(r, R)[:, None] ** 3
     inside, outside = r < R, r > R
     # the lattice shows inside as a few hundredths of the surface gravity, and outside as a quadrupole, centred as it is

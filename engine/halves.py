@@ -1,0 +1,33 @@
+"""Order of particles in a complete binary tree of equal halves."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Order = NDArray[np.int64]
+
+
+def halve(x: NDArray[np.float64], levels: int, size: int) -> Order:
+    """Particles by leaf: every node is cut at the median along the longest side of its box.
+
+    All nodes of a level are cut at once. Copies of particles make up the number that 2^levels leaves hold.
+
+    Args:
+        x: positions [m], shape [particle_count, 3].
+        levels: levels below the root.
+        size: particles in a leaf, at least particle_count / 2^levels.
+
+    Returns:
+        Index of the particle in every place of every leaf, or ~index for its copy; shape [2^levels, size].
+    """
+    copies = np.arange((size << levels) - len(x)) % len(x)
+    order = np.concatenate([np.arange(len(x)), ~copies])
+    points = np.ascontiguousarray(np.concatenate([x, x[copies]]).T)
+    for level in range(levels):
+        nodes = np.arange(1 << level)
+        sides = points.reshape(3, len(nodes), -1)
+        longest = np.argmax(np.ptp(sides, axis=2), axis=0)
+        half = sides.shape[2] // 2
+        halves = np.argpartition(sides[longest, nodes], half, axis=1)
+        moved = (halves + 2 * half * nodes[:, None]).ravel()
+        order, points = order[moved], np.take(points, moved, axis=1)
+    return order.reshape(-1, size)
