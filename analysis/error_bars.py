@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from analysis.statistics import resolved, standard_error
+from analysis.statistics import difference, resolved, standard_error
 from analysis.variables import COSTS, OUTCOMES, WITHOUT_ERROR
 
 MEMBERS = ("resolution", "seed")
@@ -53,7 +53,7 @@ def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
     return {
         name: mean,
         f"{name}_error": error.assign_attrs(about),
-        f"{name}_resolved": resolved(fine, coarse).assign_attrs(flag),
+        f"{name}_resolved": resolved(*difference(fine, coarse)).assign_attrs(flag),
     }
 
 

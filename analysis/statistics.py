@@ -4,6 +4,8 @@ import numpy as np
 import xarray as xr
 from scipy.stats import t as student
 
+Difference = tuple[xr.DataArray, xr.DataArray]
+
 CONFIDENCE = 0.95
 """Probability that an interval holds the mean."""
 
@@ -28,23 +30,31 @@ def interval(values: xr.DataArray, dim: str = "seed") -> xr.DataArray:
     return _quantile(count(values, dim)) * standard_error(values, dim)
 
 
-def difference(values: xr.DataArray, other: xr.DataArray, dim: str = "seed") -> tuple[xr.DataArray, xr.DataArray]:
-    """Difference of two means, and half the width of its confidence interval.
+def difference(values: xr.DataArray, other: xr.DataArray, dim: str = "seed") -> Difference:
+    """Difference of the means of two independent samples, and half the width of its confidence interval.
 
     The half-widths of the two means add in quadrature. A mean of a single value has none of its own: it is taken to
     scatter like the values it is compared with (prediction interval of one observation).
 
     Args:
-        values, other: values along `dim`, not paired.
+        values, other: values along `dim`.
         dim: dimension over which both are averaged.
     """
     half = (_half(values, other, dim) ** 2 + _half(other, values, dim) ** 2) ** 0.5
     return values.mean(dim) - other.mean(dim), half
 
 
-def resolved(values: xr.DataArray, other: xr.DataArray, dim: str = "seed") -> xr.DataArray:
-    """1 where the difference of two means exceeds its confidence interval, 0 where not, NaN where unknown."""
-    change, half = difference(values, other, dim)
+def paired_difference(values: xr.DataArray, other: xr.DataArray, dim: str = "seed") -> Difference:
+    """Mean of the differences one by one along `dim`, and half the width of its confidence interval.
+
+    What both samples share at the same place, as the particles and flaws of a seed, cancels.
+    """
+    change = values - other
+    return change.mean(dim), interval(change, dim)
+
+
+def resolved(change: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
+    """1 where a difference exceeds half the width of its confidence interval, 0 where not, NaN where unknown."""
     return (abs(change) > half).astype(float).where(change.notnull() & half.notnull())
 
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from analysis.accuracy.cases import BASE, Case
 from analysis.accuracy.orders import orders
-from analysis.statistics import count, difference, interval, resolved
+from analysis.statistics import Difference, count, difference, interval, paired_difference, resolved
 from analysis.variables import OUTCOMES
 
 MEASURED = ("mass_ratio", "b_over_a", "c_over_a", "bulk_density")
@@ -18,8 +18,11 @@ RESOLUTION = ("none", "particles")
 """Knobs of the cases that differ in resolution alone."""
 
 _INTERVAL = "half the width of the 95 % confidence interval, Student's t over seeds"
-_ALONE = "a case of one seed is taken to scatter like the one it is compared with"
-_RESOLVED = "1 where the difference exceeds the interval that the seeds of both cases leave it, 0 where not"
+_PAIRED = (
+    "seed by seed between cases of equal resolution, whose bodies are the same; "
+    "else of the means, a case of one seed being taken to scatter like the one it is compared with"
+)
+_RESOLVED = "1 where the difference exceeds its interval, 0 where not"
 
 
 def accuracy(results: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
@@ -35,7 +38,7 @@ def accuracy(results: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
     for name in MEASURED:
         found = found.assign(_mean(done[name]))
         for role, other in {"base": BASE, "finest": finest}.items():
-            found = found.assign(_change(done[name], other, role))
+            found = found.assign(_change(done[name], found, other, role))
     for name in (*DRIFTS, "cpu_time", "steps"):
         found = found.assign(_mean(abs(done[name]).assign_attrs(done[name].attrs)))
     return found.assign(orders(found, finest)).assign_attrs(finest=finest)
@@ -78,20 +81,27 @@ def _mean(values: xr.DataArray) -> dict[str, xr.DataArray]:
     }
 
 
-def _change(values: xr.DataArray, other: str, role: str) -> dict[str, xr.DataArray]:
+def _change(values: xr.DataArray, found: xr.Dataset, other: str, role: str) -> dict[str, xr.DataArray]:
     """Difference of every case to another one, which itself has none."""
     reference = values.sel(case=other, drop=True)
     elsewhere = values["case"] != other
-    change, half = difference(values, reference)
+    change, half = _difference(values, reference, same_bodies=found["particles"] == found["particles"].sel(case=other))
     name, variable = f"{values.name}_minus_{role}", OUTCOMES[str(values.name)]
     long_name = f"{variable.long_name}, minus that of the {role} case"
     units = {"units": variable.units}
     return {
         name: change.where(elsewhere).assign_attrs(long_name=long_name, **units),
         f"{name}_interval": half.where(elsewhere).assign_attrs(
-            long_name=f"interval of the {long_name}", comment=f"{_INTERVAL}; {_ALONE}", **units
+            long_name=f"interval of the {long_name}", comment=f"{_INTERVAL}; {_PAIRED}", **units
         ),
-        f"{name}_resolved": resolved(values, reference)
+        f"{name}_resolved": resolved(change, half)
         .where(elsewhere)
         .assign_attrs(long_name=f"resolved: {long_name}", units="1", comment=_RESOLVED),
     }
+
+
+def _difference(values: xr.DataArray, reference: xr.DataArray, same_bodies: xr.DataArray) -> Difference:
+    """Seed by seed where a seed makes the same bodies, of the means elsewhere."""
+    pairs, means = paired_difference(values, reference), difference(values, reference)
+    change, half = (pair.where(same_bodies, mean) for pair, mean in zip(pairs, means, strict=True))
+    return change, half

@@ -50,7 +50,10 @@ def markdown(found: xr.Dataset, planned: int) -> str:
     """
     finest, left_out = found.attrs["finest"], planned - found.sizes["case"]
     missing = f" {left_out} cases of the study have no finished run and are left out." if left_out else ""
-    bold = "Bold is resolved: larger than its interval; the rest is not resolved from 0."
+    bold = (
+        "Seed by seed between cases of equal resolution, whose bodies are the same; else of the means. "
+        "Bold is resolved, larger than its interval; the rest is not resolved."
+    )
     parts = [
         f"Means over seeds +- half the width of their 95 % confidence interval.{missing}\n\n{_values(found)}",
         f"Difference to the base. {bold}\n\n{_changes(found, 'base')}",

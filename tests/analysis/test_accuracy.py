@@ -50,8 +50,10 @@ def test_differences_and_their_verdict() -> None:
     np.testing.assert_allclose(found["b_over_a_interval"], half, rtol=1e-6)
     cfl = found.sel(case="cfl")
     assert cfl["b_over_a_minus_base"] == pytest.approx(1.0)
-    assert cfl["b_over_a_minus_base_interval"] == pytest.approx(np.sqrt(2.0) * half)
+    assert cfl["b_over_a_minus_base_interval"] == pytest.approx(0.0, abs=1e-12)  # same bodies, seed by seed
     assert cfl["b_over_a_minus_base_resolved"] == 1.0
+    assert cfl["b_over_a_minus_finest_interval"] == pytest.approx(np.sqrt(2.0) * half)
+    assert found.sel(case="particles500")["b_over_a_minus_base_interval"] == pytest.approx(np.sqrt(2.0) * half)
     assert found.sel(case="particles500")["b_over_a_minus_base_resolved"] == 0.0
     assert np.isnan(found.sel(case="base")["b_over_a_minus_base"])
     assert found.attrs["finest"] == "particles32000" and np.isnan(

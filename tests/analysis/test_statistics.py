@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from analysis.statistics import difference, interval, resolved, standard_error
+from analysis.statistics import difference, interval, paired_difference, resolved, standard_error
 
 
 def seeds(*values: float) -> xr.DataArray:
@@ -44,9 +44,17 @@ def test_a_single_value_scatters_like_the_others() -> None:
 def test_a_difference_is_resolved_beyond_its_interval() -> None:
     values = seeds(1.0, 2.0, 3.0)
     half = float(difference(values, values)[1])
-    assert resolved(values, values + 0.99 * half) == 0.0
-    assert resolved(values, values + 1.01 * half) == 1.0
-    assert np.isnan(resolved(seeds(1.0), seeds(2.0))) and np.isnan(resolved(values, seeds(np.nan)))
+    assert resolved(*difference(values, values + 0.99 * half)) == 0.0
+    assert resolved(*difference(values, values + 1.01 * half)) == 1.0
+    assert np.isnan(resolved(*difference(seeds(1.0), seeds(2.0))))
+    assert np.isnan(resolved(*difference(values, seeds(np.nan))))
+
+
+def test_what_a_seed_does_to_both_cancels_in_pairs() -> None:
+    values = seeds(1.0, 20.0, 300.0, np.nan)
+    change, half = paired_difference(values, values + seeds(0.4, 0.5, 0.6, 0.7))
+    assert change == pytest.approx(-0.5)
+    assert half == pytest.approx(interval(seeds(0.4, 0.5, 0.6)))
 
 
 def test_intervals_hold_the_mean_as_often_as_they_say() -> None:

@@ -46,7 +46,14 @@ def is_asked(job: Path, what: str) -> bool:
     return os.environ.get(f"FAKE_{what}", "nothing") in job.name
 
 
+def is_done(job: Path) -> bool:
+    status = job / "status.json"
+    return (job / "final.nc").is_file() and json.loads(status.read_text())["state"] == "done"
+
+
 def run(job: Path) -> int:
+    if is_done(job):
+        return 0
     checkpoint = job / "checkpoint.nc"
     first = int(checkpoint.read_text()) if checkpoint.is_file() else 0
     with (job / "log.txt").open("a") as log:
