@@ -10,7 +10,7 @@ import taichi as ti
 
 from engine.backend import Real
 from engine.materials import Material
-from engine.tensors import identity, pack, symmetric, unpack
+from engine.tensors import determinant_increment, identity, pack, symmetric, unpack
 
 
 @ti.func
@@ -62,17 +62,17 @@ class Constitution:
             dt: time step [s].
         """
         body = self.particles.body[p]
-        m = self.table[body]
-        B, j = self.shear.deform(p, self.particles.j[p], dt * L)
-        strain, d = strain_increment(dt * L), symmetric(L)
+        m, A = self.table[body], dt * L
+        growth, strain = determinant_increment(A), strain_increment(A)
+        j = self.particles.j[p] + (1.0 + self.particles.j[p]) * growth
         half_work = 0.5 / m.rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E, D = self.energy.after(p, 2.0 * half_work), self.damage.value(p)
-        P, c2 = self.pressure.pressure(-j / (1.0 + j), E, body)
+        J = 1.0 + j
+        P, c2 = self.pressure.pressure(-j / J, E, body)
         if P < 0.0:
             P *= 1.0 - D
-        J = 1.0 + j
-        s = self.shear.stress(p, B, J, P, E, D, body)
-        stress, diffusivity = self.viscosity.stress(d, m.rho0 / J, ti.sqrt(c2))
+        s = self.shear.stress(p, A, growth, J, P, E, D, body)
+        stress, diffusivity = self.viscosity.stress(symmetric(L), m.rho0 / J, ti.sqrt(c2))
         tau = s + J * (stress - P * identity())
         self.particles.j[p], self.particles.tau[p] = j, pack(tau)
         # trapezoidal rule: the work of the mean stress, so that elastic energy does not drift

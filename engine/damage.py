@@ -17,7 +17,7 @@ class Damage:
     """
 
     def __init__(self, particles: Any, fracture: Any) -> None:
-        self.root, self.fracture = particles.hold("root"), fracture
+        self.root, self.index, self.fracture = particles.hold("root"), particles.index, fracture
 
     @ti.func
     def value(self, p):
@@ -28,7 +28,7 @@ class Damage:
     @ti.func
     def grow(self, p, s, P, dt, body):
         """Break particle p further, under deviatoric Cauchy stress s [Pa] and pressure P [Pa], for a step dt [s]."""
-        self.root[p] = self.fracture.grow(self.root[p], s, P, dt, p, body)
+        self.root[p] = self.fracture.grow(self.root[p], s, P, dt, self.index[p], body)
 
 
 @ti.data_oriented

@@ -26,7 +26,7 @@ class InternalEnergy:
     @ti.func
     def add(self, p, work):
         """Add work [J/kg] to the energy of particle p."""
-        self.E[p] += work
+        self.E[p] = self.E[p] + work  # += would be atomic
 
 
 @ti.data_oriented

@@ -8,7 +8,7 @@ from engine import materials
 from engine.backend import Real, filled
 from engine.body import Solid
 from engine.flaws import Flaws
-from engine.tensors import largest_eigenvalue
+from engine.tensors import largest_eigenvalue, norm_squared
 
 
 @ti.data_oriented
@@ -44,14 +44,16 @@ class Fracture:
             body: index of its body.
         """
         m = self.table[body]
-        result = root
-        if root < 1.0:
-            strain = (largest_eigenvalue(s) - P) / m.modulus
-            active, total = self._active(strain, p), self.first[p + 1] - self.first[p]
-            if active > 0:
-                cracks = active if ti.static(self.per_flaw) else 1
-                cap = (ti.cast(active, Real) / total) ** (1.0 / 3.0)
-                result = ti.max(root, ti.min(root + cracks * m.rate * dt, cap))
+        result, first, total = root, self.first[p], self.first[p + 1] - self.first[p]
+        if root < 1.0 and total > 0:
+            # no eigenvalue of a deviator exceeds sqrt(2/3) of its norm: most particles are far from their first flaw
+            bound = ti.sqrt(2.0 / 3.0 * norm_squared(s)) - P
+            if bound >= self.strain[first] * m.modulus:
+                active = self._active((largest_eigenvalue(s) - P) / m.modulus, p)
+                if active > 0:
+                    cracks = active if ti.static(self.per_flaw) else 1
+                    cap = (ti.cast(active, Real) / total) ** (1.0 / 3.0)
+                    result = ti.max(root, ti.min(root + cracks * m.rate * dt, cap))
         return result
 
     @ti.func

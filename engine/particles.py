@@ -1,4 +1,4 @@
-"""State of all particles on the device, in an order that never changes."""
+"""State of all particles on the device."""
 
 from typing import Any
 
@@ -39,12 +39,17 @@ class Particles:
     root of damage; acceleration, gravity held at present. A quantity that no part holds is zero: it is read as zeros,
     and nothing else can be written to it.
 
+    On the device particles lie in the order of the last `sort`, so that those of a block are read in one go. `index`
+    holds their numbers in the scene, which never change and by which `read` and `write` know them.
+
     Args:
         count: number of particles.
     """
 
     def __init__(self, count: int) -> None:
         self.count = count
+        self.index = ti.field(ti.i32, capacity(count))
+        self._number(np.arange(count, dtype=np.int32))
         for name in ALWAYS:
             self.hold(name)
 
@@ -72,12 +77,30 @@ class Particles:
         """
         for name, values in arrays.items():
             if name in self.held:
-                overwrite(getattr(self, name), values)
+                overwrite(getattr(self, name), values[self.order])
             elif np.any(values):
                 raise ValueError(f"no part of the scene holds '{name}': it can only be zero")
 
+    def sort(self, order: NDArray[np.integer[Any]]) -> None:
+        """Move all particles on the device.
+
+        Args:
+            order: number of the particle that each place receives, shape [particle_count].
+        """
+        source = np.argsort(self.order)[order]
+        for field in (getattr(self, name) for name in self.held):
+            overwrite(field, field.to_numpy()[source])
+        self._number(order)
+
+    def _number(self, order: NDArray[np.integer[Any]]) -> None:
+        self.order = order
+        overwrite(self.index, order)
+
     def _values(self, name: str) -> NDArray[Any]:
         if name in self.held:
-            return np.asarray(getattr(self, name).to_numpy()[: self.count])
+            values = getattr(self, name).to_numpy()[: self.count]
+            result = np.empty_like(values)
+            result[self.order] = values
+            return np.asarray(result)
         kind = KINDS[name]
         return np.zeros((self.count, *(kind.get_shape() if hasattr(kind, "get_shape") else ())))

@@ -9,10 +9,10 @@ from typing import Any
 
 import taichi as ti
 
-from engine.backend import Real, vec6
+from engine.backend import Real, mat3, vec6
 from engine.materials import Material
+from engine.strength import retained
 from engine.tensors import (
-    determinant_increment,
     deviator,
     exp_minus_identity,
     half_log,
@@ -36,17 +36,16 @@ def isochoric(growth):
 
 
 @ti.func
-def deform(B, j, A):
-    """Trial strain after the displacement gradient A = dt L.
+def deform(B, A, growth):
+    """Trial strain after the displacement gradient A = dt L, which changes the volume by the share `growth`.
 
     The isotropic part of I + B carries no stress; the factor det(I + A)^(-2/3) keeps it near one.
     """
-    growth = determinant_increment(A)
     excess = isochoric(growth)
     C = unpack(B)
-    AC = A @ C
-    increment = A + A.transpose() + AC + AC.transpose() + A @ (identity() + C) @ A.transpose()
-    return pack((1.0 + excess) * (C + increment) + excess * identity()), j + (1.0 + j) * growth
+    M = A + A @ C
+    increment = M + M.transpose() + M @ A.transpose()
+    return pack((1.0 + excess) * (C + increment) + excess * identity())
 
 
 @ti.data_oriented
@@ -66,21 +65,20 @@ class Hencky:
             self.table.modulus[i] = material.shear_modulus
 
     @ti.func
-    def deform(self, p, j, A):
-        """Trial strain of particle p, and det F - 1, after the displacement gradient A."""
-        return deform(self.B[p], j, A)
+    def stress(self, p, A, growth, J, P, E, D, body):
+        """Deviatoric Kirchhoff stress [Pa] of particle p after the displacement gradient A.
 
-    @ti.func
-    def stress(self, p, B, J, P, E, D, body):
-        """Deviatoric Kirchhoff stress [Pa] of the trial strain B; what remains elastic after yielding is kept."""
-        G = self.modulus(body)
-        remaining = B
-        strain = deviator(half_log(unpack(B)))
-        root_J2 = 2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain))
-        share = self.strength.retained(root_J2, P, E, D, body)
-        if share < 1.0:
-            strain *= share
-            remaining = pack(exp_minus_identity(2.0 * strain))
+        What remains elastic after yielding is kept; matter that bears no shear stress keeps no strain.
+        """
+        G, Y = self.modulus(body), self.strength.limit(P, E, D, body)
+        strain, remaining = mat3(0.0), vec6(0.0)
+        if Y > 0.0:
+            remaining = deform(self.B[p], A, growth)
+            strain = deviator(half_log(unpack(remaining)))
+            share = retained(2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain)), Y)
+            if share < 1.0:
+                strain *= share
+                remaining = pack(exp_minus_identity(2.0 * strain))
         self.B[p] = remaining
         return 2.0 * G * strain
 
@@ -95,14 +93,9 @@ class Fluid:
     """Matter without shear stress."""
 
     @ti.func
-    def deform(self, p, j, A):
-        """No strain but det F - 1."""
-        return vec6(0.0), j + (1.0 + j) * determinant_increment(A)
-
-    @ti.func
-    def stress(self, p, B, J, P, E, D, body):
+    def stress(self, p, A, growth, J, P, E, D, body):
         """No stress."""
-        return 0.0 * identity()
+        return mat3(0.0)
 
     @ti.func
     def modulus(self, body):

@@ -96,6 +96,7 @@ class Simulation:
         blocks = build_blocks(self.particles.read("origin")["origin"], self.scene.period_blocks)
         if len(blocks.origin) > self.transfer.capacity:
             self._make_room(2 * len(blocks.origin))
+        self.particles.sort(blocks.order)
         self.transfer.use(blocks)
         self.clock.moved_out[None] = 0
 

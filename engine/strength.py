@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import taichi as ti
+import taichi.math as tm
 
 from engine.backend import Real
 from engine.materials import Material
@@ -35,20 +36,11 @@ class Strength:
         """
         m = self.table[body]
         confining = ti.max(P, 0.0)
-        friction = m.intact_friction * confining
-        intact = m.cohesion + friction / (1.0 + friction / (m.strength_limit - m.cohesion))
+        friction, rise = m.intact_friction * confining, m.strength_limit - m.cohesion
+        intact = m.cohesion + friction * rise / (rise + friction)
         intact *= ti.min(ti.max(1.0 - E / m.melt_energy, 0.0), 1.0)
         damaged = ti.min(m.damaged_friction * confining, intact)
         return (1.0 - D) * intact + D * damaged
-
-    @ti.func
-    def retained(self, root_J2, P, E, D, body):
-        """Share of the deviatoric strain that stays elastic: 1 below the limit, Y/sqrt(J2) beyond it."""
-        Y = self.limit(P, E, D, body)
-        share = ti.cast(1.0, Real)
-        if root_J2 > Y:
-            share = Y / root_J2
-        return share
 
 
 @ti.data_oriented
@@ -56,6 +48,15 @@ class Unlimited:
     """A solid that never yields."""
 
     @ti.func
-    def retained(self, root_J2, P, E, D, body):
-        """All deviatoric strain stays elastic."""
-        return ti.cast(1.0, Real)
+    def limit(self, P, E, D, body):
+        """No shear stress is too large."""
+        return ti.cast(tm.inf, Real)
+
+
+@ti.func
+def retained(root_J2, Y):
+    """Share of the deviatoric strain that stays elastic: 1 up to the limit Y of sqrt(J2), their ratio beyond it."""
+    share = ti.cast(1.0, Real)
+    if root_J2 > Y:
+        share = Y / root_J2
+    return share

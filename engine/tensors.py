@@ -1,15 +1,17 @@
 """Functions of symmetric 3x3 tensors that keep the digits of small strains (engine/physics.md, section 10)."""
 
+import math
+
 import taichi as ti
 import taichi.math as tm
 
 from engine.backend import mat3, vec3, vec6
 
-SERIES_LIMIT = 0.2
+SERIES_LIMIT = 0.05
 """Frobenius norm up to which the series below reach round-off; larger tensors go through their eigenvectors."""
 
-LOG_ORDER = 15
-EXP_ORDER = 13
+ORDER = 9
+INVERSE_FACTORIAL = tuple(1.0 / math.factorial(n) for n in range(ORDER + 1))
 
 
 @ti.func
@@ -94,28 +96,28 @@ def exp_minus_identity(S):
 @ti.func
 def _half_log_series(B):
     """atanh(Z), Z = B (2I + B)^-1, with powers of Z reduced by its characteristic polynomial."""
-    Z = symmetric(B @ (2.0 * identity() + B).inverse())
-    square = Z @ Z
+    Z = unpack(pack(B @ (2.0 * identity() + B).inverse()))
+    square = unpack(pack(Z @ Z))
     trace, third = Z.trace(), Z.determinant()
     second = 0.5 * (trace * trace - square.trace())
     power = vec3(0.0, 1.0, 0.0)  # Z^n = power . (Z^2, Z, I)
     total = power
-    for n in ti.static(range(2, LOG_ORDER + 1)):
+    for n in ti.static(range(2, ORDER + 1)):
         power = vec3(power[1] + trace * power[0], power[2] - second * power[0], third * power[0])
         if ti.static(n % 2 == 1):
-            total += power / n
+            total += (1.0 / n) * power
     return total[0] * square + total[1] * Z + total[2] * identity()
 
 
 @ti.func
 def _expm1_series(S):
-    square = S @ S
+    square = unpack(pack(S @ S))
     second, third = 0.5 * square.trace(), S.determinant()
-    term = vec3(0.0, 1.0, 0.0)
-    total = term
-    for n in ti.static(range(2, EXP_ORDER + 1)):
-        term = vec3(term[1], term[2] + second * term[0], third * term[0]) / n
-        total += term
+    power = vec3(0.0, 1.0, 0.0)  # S^n = power . (S^2, S, I)
+    total = power
+    for n in ti.static(range(2, ORDER + 1)):
+        power = vec3(power[1], power[2] + second * power[0], third * power[0])
+        total += ti.static(INVERSE_FACTORIAL[n]) * power
     return total[0] * square + total[1] * S + total[2] * identity()
 
 

@@ -36,19 +36,19 @@ class Tillotson:
             body: index of the body, which fixes the material.
         """
         m = self.table[body]
-        cold_P, cold_rho, cold_E = condensed(m, mu, E)
-        P, P_rho, P_E = cold_P, cold_rho, cold_E
+        cold_P, cold_eta, cold_e = condensed(m, mu, E)
+        P, P_eta, P_e = cold_P, cold_eta, cold_e
         if mu < 0.0 and m.E_iv < E:
-            hot_P, hot_rho, hot_E = expanded(m, mu, E)
+            hot_P, hot_eta, hot_e = expanded(m, mu, E)
             hot = ti.min((E - m.E_iv) / (m.E_cv - m.E_iv), 1.0)
             P = hot * hot_P + (1.0 - hot) * cold_P
-            P_rho = hot * hot_rho + (1.0 - hot) * cold_rho
-            P_E = hot * hot_E + (1.0 - hot) * cold_E
+            P_eta = hot * hot_eta + (1.0 - hot) * cold_eta
+            P_e = hot * hot_e + (1.0 - hot) * cold_e
             if hot < 1.0:
-                P_E += (hot_P - cold_P) / (m.E_cv - m.E_iv)
-        rho = m.rho0 * (1.0 + mu)
-        floor = SOUND_SPEED_FLOOR * SOUND_SPEED_FLOOR * m.A / m.rho0
-        return P, ti.max(P_rho + P * P_E / (rho * rho), floor)
+                P_e += (hot_P - cold_P) / (m.rho0 * (m.E_cv - m.E_iv))
+        eta = 1.0 + mu
+        floor = SOUND_SPEED_FLOOR * SOUND_SPEED_FLOOR * m.A
+        return P, ti.max(P_eta + P * P_e / (eta * eta), floor) / m.rho0
 
 
 @ti.data_oriented
@@ -59,41 +59,40 @@ class ColdTillotson(Tillotson):
     def pressure(self, mu, E, body):
         """Pressure [Pa] and squared sound speed [m^2/s^2]; there is no energy E."""
         m = self.table[body]
-        floor = SOUND_SPEED_FLOOR * SOUND_SPEED_FLOOR * m.A / m.rho0
-        return (m.A + m.B * mu) * mu, ti.max((m.A + 2.0 * m.B * mu) / m.rho0, floor)
+        floor = SOUND_SPEED_FLOOR * SOUND_SPEED_FLOOR * m.A
+        return (m.A + m.B * mu) * mu, ti.max(m.A + 2.0 * m.B * mu, floor) / m.rho0
 
 
 @ti.func
 def condensed(m, mu, E):
-    """Pressure of compressed or cold matter and its derivatives by rho and by E."""
-    eta = 1.0 + mu
-    rho = m.rho0 * eta
-    omega = 1.0 / (E / (m.E0 * eta * eta) + 1.0)
-    omega_rho = 2.0 * omega * (1.0 - omega) / rho
-    omega_E = -omega * omega / (m.E0 * eta * eta)
-    gruneisen = m.a + m.b * omega
-    P = gruneisen * rho * E + (m.A + m.B * mu) * mu
-    P_rho = (gruneisen + m.b * rho * omega_rho) * E + (m.A + 2.0 * m.B * mu) / m.rho0
-    P_E = rho * (gruneisen + m.b * E * omega_E)
-    return P, P_rho, P_E
+    """Pressure of compressed or cold matter and its derivatives by eta and by e = rho0 E, all in Pa."""
+    eta, e = 1.0 + mu, m.rho0 * E
+    omega = inverse_omega(m, eta, E)
+    P = (m.a + m.b * omega) * eta * e + (m.A + m.B * mu) * mu
+    P_eta = (m.a + m.b * omega * (3.0 - 2.0 * omega)) * e + m.A + 2.0 * m.B * mu
+    P_e = (m.a + m.b * omega * omega) * eta
+    return P, P_eta, P_e
 
 
 @ti.func
 def expanded(m, mu, E):
-    """Pressure of expanded hot matter and its derivatives by rho and by E."""
-    eta = 1.0 + mu
-    rho = m.rho0 * eta
-    omega = 1.0 / (E / (m.E0 * eta * eta) + 1.0)
-    omega_rho = 2.0 * omega * (1.0 - omega) / rho
-    omega_E = -omega * omega / (m.E0 * eta * eta)
-    stretch = 1.0 / eta - 1.0
-    stretch_rho = -1.0 / (eta * rho)
+    """Pressure of expanded hot matter and its derivatives by eta and by e = rho0 E, all in Pa."""
+    eta, e = 1.0 + mu, m.rho0 * E
+    omega = inverse_omega(m, eta, E)
+    J = 1.0 / eta
+    stretch = J - 1.0
     gauss = ti.exp(-m.alpha * stretch * stretch)
-    cold = m.A * mu * ti.exp(-m.beta * stretch)
-    cold_rho = (m.A / m.rho0) * ti.exp(-m.beta * stretch) - m.beta * stretch_rho * cold
-    bracket = m.b * rho * E * omega + cold
-    bracket_rho = m.b * E * (omega + rho * omega_rho) + cold_rho
-    P = m.a * rho * E + bracket * gauss
-    P_rho = m.a * E + (bracket_rho - 2.0 * m.alpha * stretch * stretch_rho * bracket) * gauss
-    P_E = m.a * rho + m.b * rho * (omega + E * omega_E) * gauss
-    return P, P_rho, P_E
+    cold = m.A * ti.exp(-m.beta * stretch)
+    bracket = m.b * omega * eta * e + cold * mu
+    bracket_eta = m.b * omega * (3.0 - 2.0 * omega) * e + cold * (1.0 + m.beta * mu * J * J)
+    P = m.a * eta * e + bracket * gauss
+    P_eta = m.a * e + (bracket_eta + 2.0 * m.alpha * stretch * J * J * bracket) * gauss
+    P_e = (m.a + m.b * omega * omega * gauss) * eta
+    return P, P_eta, P_e
+
+
+@ti.func
+def inverse_omega(m, eta, E):
+    """1 / (E / (E0 eta^2) + 1)."""
+    cold = m.E0 * eta * eta
+    return cold / (cold + E)

@@ -14,6 +14,7 @@ import taichi.math as tm
 from engine.backend import TASK, Real, capacity, mat3, on_gpu, overwrite, vec3, vec4
 from engine.blocks import Blocks
 from engine.clock import FAULT_INVERTED, Clock
+from engine.spline import moments, own_share, spline_weights
 from engine.tensors import determinant_increment, identity, norm_squared, symmetric, unpack
 
 SPAN = 8
@@ -30,15 +31,11 @@ ALONE = 1e-14
 The smaller of both masses at a node bounds the momentum they can exchange there, so that none is lost with them.
 """
 
+MIXED = 1e-3
+"""Mean mass of others on a particle's nodes, in units of its own, above which it is surely not alone."""
 
 ROUNDING = 1e-9
 """Relative difference of energies that are equal but for round-off."""
-
-
-@ti.func
-def spline_weights(f):
-    """Quadratic B-spline weights of three nodes at distance f, in cells, above the lowest; f in [0.5, 1.5)."""
-    return ti.Matrix.cols([0.5 * (1.5 - f) ** 2, 0.75 - (f - 1.0) ** 2, 0.5 * (f - 0.5) ** 2])
 
 
 @ti.data_oriented
@@ -75,7 +72,6 @@ class Transfer:
         self.dx[None], self.cfl[None] = dx, cfl
         self.block_count, self.tile_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.shared_count, self.alone_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
-        self.order = ti.field(ti.i32, particles.x.shape)
         self.owner = ti.field(ti.i32, particles.x.shape)
         self.origin = ti.Vector.field(3, ti.i32, self.capacity)
         self.first = ti.field(ti.i32, self.capacity + 1)
@@ -83,14 +79,13 @@ class Transfer:
         self.nodes = vec4.field(shape=self.capacity * COPY)
 
     def use(self, blocks: Blocks) -> None:
-        """Take over newly built blocks; there must be room for them."""
+        """Take over newly built blocks, in whose order the particles lie; there must be room for them."""
         shared = int(blocks.first[-1])
         counts = (self.block_count, self.tile_count, self.shared_count, self.alone_count)
         sizes = (len(blocks.origin), len(blocks.source), shared, len(blocks.order) - shared)
         for field, size in zip(counts, sizes, strict=True):
             field[None] = size
         owner = np.repeat(np.arange(len(blocks.origin), dtype=np.int32), np.diff(blocks.first))
-        overwrite(self.order, blocks.order)
         overwrite(self.owner, owner)
         overwrite(self.origin, blocks.origin)
         overwrite(self.first, blocks.first)
@@ -109,13 +104,13 @@ class Transfer:
         blocks = self.block_count[None] * self.clock.running[None]
         if ti.static(self.by_block):
             for t in range(blocks * TASK):
-                if t % TASK == 0:
+                if t & (TASK - 1) == 0:
                     self.fill_block(t // TASK)
         else:
             for n in range(blocks * COPY):
                 self.nodes[n] = vec4(0.0)
             for k in range(self.shared_count[None] * self.clock.running[None]):
-                self.scatter(self.order[k], self.owner[k])
+                self.scatter(k, self.owner[k])
 
     @ti.kernel
     def update_grid(self):
@@ -153,14 +148,14 @@ class Transfer:
         """Move and deform every particle with the velocity of its nodes."""
         if ti.static(self.by_block):
             for t in range(self.block_count[None] * self.clock.running[None] * TASK):
-                if t % TASK == 0:
-                    self.clock.report_rate(self.empty_block(t // TASK))
+                if t & (TASK - 1) == 0:
+                    self.report(self.empty_block(t // TASK))
         else:
             for k in range(self.shared_count[None] * self.clock.running[None]):
-                self.clock.report_rate(self.gather(self.order[k], self.owner[k]))
+                self.report(self.gather(k, self.owner[k]))
         for k in range(self.alone_count[None] * self.clock.running[None]):
-            p = self.order[self.shared_count[None] + k]
-            self.clock.report_rate(self.drift(p))
+            p = self.shared_count[None] + k
+            self.report(self.drift(p))
             self.check_place(p)
 
     @ti.func
@@ -168,16 +163,29 @@ class Transfer:
         """Collect the particles of block b on its nodes."""
         for n in range(b * COPY, (b + 1) * COPY):
             self.nodes[n] = vec4(0.0)
-        for k in range(self.first[b], self.first[b + 1]):
-            self.scatter(self.order[k], b)
+        for p in range(self.first[b], self.first[b + 1]):
+            self.scatter(p, b)
 
     @ti.func
     def empty_block(self, b):
-        """Advance the particles of block b; returns the inverse time step they allow [1/s]."""
-        rate = ti.cast(0.0, Real)
-        for k in range(self.first[b], self.first[b + 1]):
-            rate = ti.max(rate, self.gather(self.order[k], b))
-        return rate
+        """Advance the particles of block b; returns the tightest limits of their time step."""
+        limits = vec4(0.0)
+        for p in range(self.first[b], self.first[b + 1]):
+            limits = ti.max(limits, self.gather(p, b))
+        return limits
+
+    @ti.func
+    def report(self, limits):
+        """Tell the clock how long the next step may be.
+
+        Args:
+            limits: speed of signals [m/s], squares of velocity gradient [1/s^2] and of acceleration [m^2/s^4],
+                diffusivity [m^2/s].
+        """
+        dx = self.dx[None]
+        wave, deformation = limits[0] / (self.cfl[None] * dx), ti.sqrt(limits[1]) / LARGEST_INCREMENT
+        fall, diffusion = ti.sqrt(ti.sqrt(limits[2]) / dx), 6.0 * limits[3] / (dx * dx)
+        self.clock.report_rate(ti.max(wave, deformation, fall, diffusion))
 
     @ti.func
     def locate(self, p, origin):
@@ -188,23 +196,25 @@ class Transfer:
 
     @ti.func
     def scatter(self, p, b):
-        """Add particle p to the nodes of block b."""
+        """Add particle p to the nodes of block b, axis by axis: what is added is linear in the distance from it."""
         dx = self.dx[None]
         local, f = self.locate(p, self.origin[b])
-        weights = spline_weights(f)
+        w = spline_weights(f)
         mass, dt = self.particles.mass[p], self.clock.dt[None]
         volume = mass / self.constitution.table[self.particles.body[p]].rho0
-        affine = mass * self.particles.C[p] - (4.0 * dt * volume / (dx * dx)) * unpack(self.particles.tau[p])
-        momentum = mass * (self.particles.v[p] + dt * self.gravity.at(p))
+        affine = (mass * dx) * self.particles.C[p] - (4.0 * dt * volume / dx) * unpack(self.particles.tau[p])
+        momentum = mass * (self.particles.v[p] + dt * self.gravity.at(p)) - affine @ f
+        corner = vec4(momentum, mass)
+        by_x, by_y, by_z = vec4(affine[:, 0], 0.0), vec4(affine[:, 1], 0.0), vec4(affine[:, 2], 0.0)
         start = b * COPY + (local[0] * SPAN + local[1]) * SPAN + local[2]
         for i in range(3):
-            for j in range(3):
+            for j in ti.static(range(3)):
+                weight = w[0, i] * w[1, j]
+                row = weight * (corner + i * by_x + j * by_y)
+                row_by_z = weight * by_z
                 for k in ti.static(range(3)):
-                    weight = weights[0, i] * weights[1, j] * weights[2, k]
-                    offset = dx * (vec3(i, j, k) - f)
-                    m = momentum + affine @ offset
-                    value = weight * vec4(m[0], m[1], m[2], mass)
                     n = start + (i * SPAN + j) * SPAN + k
+                    value = w[2, k] * (row + k * row_by_z)
                     if ti.static(self.by_block):
                         self.nodes[n] = self.nodes[n] + value
                     else:
@@ -212,55 +222,74 @@ class Transfer:
 
     @ti.func
     def gather(self, p, b):
-        """Advance particle p with the velocity of its nodes; returns the inverse time step it allows [1/s]."""
-        dx = self.dx[None]
+        """Advance particle p with the velocity of its nodes, summed axis by axis; returns its limits of the step."""
         local, f = self.locate(p, self.origin[b])
-        weights = spline_weights(f)
-        mass, shared = self.particles.mass[p], ti.cast(0.0, Real)
-        sum_v, sum_L = vec4(0.0), mat3(0.0)
+        w = spline_weights(f)
+        w_z, d_x, d_y, d_z = w[2, :], moments(w[0, :], f[0]), moments(w[1, :], f[1]), moments(w[2, :], f[2])
+        v, by_x, by_y, by_z = vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0)
         start = b * COPY + (local[0] * SPAN + local[1]) * SPAN + local[2]
+        for i in range(3):
+            plane, plane_by_y, plane_by_z = vec4(0.0), vec4(0.0), vec4(0.0)
+            for j in ti.static(range(3)):
+                n = start + (i * SPAN + j) * SPAN
+                first, second, third = self.nodes[n], self.nodes[n + 1], self.nodes[n + 2]
+                row = w_z[0] * first + w_z[1] * second + w_z[2] * third
+                row_by_z = d_z[0] * first + d_z[1] * second + d_z[2] * third
+                plane += w[1, j] * row
+                plane_by_y += d_y[j] * row
+                plane_by_z += w[1, j] * row_by_z
+            v += w[0, i] * plane
+            by_x += d_x[i] * plane
+            by_y += w[0, i] * plane_by_y
+            by_z += w[0, i] * plane_by_z
+        mass = self.particles.mass[p]
+        alone, limits = False, vec4(0.0)
+        if v[3] - mass * own_share(w) <= MIXED * mass:
+            alone = self.shared_mass(mass, w, start) <= ALONE * mass
+        if alone:
+            limits = self.drift(p)
+        else:
+            per_dx = 4.0 / self.dx[None]
+            L = per_dx * mat3(by_x[0], by_y[0], by_z[0], by_x[1], by_y[1], by_z[1], by_x[2], by_y[2], by_z[2])
+            limits = self.move(p, vec3(v[0], v[1], v[2]), L)
+        self.check_place(p)
+        return limits
+
+    @ti.func
+    def shared_mass(self, mass, w, start):
+        """Sum over the nodes of a particle of the smaller of its own and all others' mass [kg]."""
+        shared = ti.cast(0.0, Real)
         for i in range(3):
             for j in range(3):
                 for k in ti.static(range(3)):
-                    weight = weights[0, i] * weights[1, j] * weights[2, k]
-                    node = self.nodes[start + (i * SPAN + j) * SPAN + k]
-                    shared += ti.min(weight * mass, node[3] - weight * mass)
-                    weighted = weight * node
-                    sum_v += weighted
-                    sum_L += vec3(weighted[0], weighted[1], weighted[2]).outer_product(vec3(i, j, k) - f)
-        rate = ti.cast(0.0, Real)
-        if shared <= ALONE * mass:
-            rate = self.drift(p)
-        else:
-            rate = self.move(p, vec3(sum_v[0], sum_v[1], sum_v[2]), 4.0 / dx * sum_L)
-        self.check_place(p)
-        return rate
+                    own = w[0, i] * w[1, j] * w[2, k] * mass
+                    shared += ti.min(own, self.nodes[start + (i * SPAN + j) * SPAN + k][3] - own)
+        return shared
 
     @ti.func
     def move(self, p, v, L):
-        """Give particle p its new velocity and velocity gradient, and deform it."""
-        dx, dt = self.dx[None], self.clock.dt[None]
-        self.particles.x[p] += dt * v
+        """Give particle p its new velocity and velocity gradient, and deform it; returns its limits of the step."""
+        dt = self.clock.dt[None]
+        self.particles.x[p] = self.particles.x[p] + dt * v  # += would be atomic
         self.particles.v[p] = v
         self.particles.C[p] = affine_velocity(L, dt, self.particles.j[p])
         c, diffusivity = self.constitution.update(p, L, dt)
         if not self.particles.j[p] > -1.0 or tm.isinf(self.particles.j[p]):
-            self.clock.report_fault(FAULT_INVERTED, p)
-        wave = (c + v.norm()) / (self.cfl[None] * dx)
-        fall = ti.sqrt(self.gravity.at(p).norm() / dx)
-        return ti.max(wave, ti.sqrt(norm_squared(L)) / LARGEST_INCREMENT, fall, 6.0 * diffusivity / (dx * dx))
+            self.clock.report_fault(FAULT_INVERTED, self.particles.index[p])
+        return vec4(c + v.norm(), norm_squared(L), self.gravity.at(p).norm_sqr(), diffusivity)
 
     @ti.func
     def drift(self, p):
         """A particle that shares no node with another is ballistic: its strain rests, its spin stays.
 
-        Returns the inverse time step [1/s] that keeps it from passing another unseen.
+        Its speed limits the time step, lest it passes another unseen.
         """
         dt = self.clock.dt[None]
-        self.particles.v[p] += dt * self.gravity.at(p)
-        self.particles.x[p] += dt * self.particles.v[p]
+        v = self.particles.v[p] + dt * self.gravity.at(p)
+        self.particles.x[p] = self.particles.x[p] + dt * v
+        self.particles.v[p] = v
         self.particles.C[p] = 0.5 * (self.particles.C[p] - self.particles.C[p].transpose())
-        return self.particles.v[p].norm() / (self.cfl[None] * self.dx[None])
+        return vec4(v.norm(), 0.0, 0.0, 0.0)
 
     @ti.func
     def check_place(self, p):

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from engine.backend import mat3, vec3, vec4
 from engine.particles import Particles
+from engine.spline import spline_weights
 from engine.tensors import unpack
-from engine.transfer import affine_velocity, spline_weights
+from engine.transfer import affine_velocity
 
 MARGIN = 2
 """Cells by which particles may leave the box that holds them at first."""
@@ -85,7 +86,7 @@ class DenseTransfer:
                 weighted = weights[0, i] * weights[1, j] * weights[2, k] * vec3(node[0], node[1], node[2])
                 v += weighted
                 L += 4.0 / self.dx * weighted.outer_product(vec3(i, j, k) - f)
-            self.particles.x[p] += dt * v
+            self.particles.x[p] = self.particles.x[p] + dt * v
             self.particles.v[p] = v
             self.particles.C[p] = affine_velocity(L, dt, self.particles.j[p])
             self.constitution.update(p, L, dt)

@@ -18,7 +18,6 @@ def bytes_per_step(simulation: Simulation) -> float:
     particles, transfer = simulation.particles, simulation.transfer
     names = [name for name in (*PARTICLES_TO_GRID, *GRID_TO_PARTICLES, *UPDATED) if name in particles.held]
     state = sum(entry_bytes(getattr(particles, name)) for name in names)
-    state += 2 * entry_bytes(transfer.order)
     copies = int(transfer.block_count[None]) * COPY
     return state + GRID_PASSES * copies * entry_bytes(transfer.nodes) / particles.count
 
@@ -30,11 +29,11 @@ def allocated(simulation: Simulation) -> dict[str, float]:
     """
     particles, transfer, fracture = simulation.particles, simulation.transfer, simulation.constitution.damage.fracture
     count = particles.count
-    per_particle = [*own_fields(particles).values(), transfer.order, transfer.owner]
+    per_particle = [*own_fields(particles).values(), transfer.owner]
     flaws = [fracture.first, fracture.strain]
     used = sum(map(entry_bytes, [*per_particle, fracture.first])) * count
     used += int(fracture.first[count]) * entry_bytes(fracture.strain)
-    grid = [field for name, field in own_fields(transfer).items() if name not in ("order", "owner")]
+    grid = [field for name, field in own_fields(transfer).items() if name != "owner"]
     return {
         "state": sum(map(allocated_bytes, [*per_particle, *flaws])) / count,
         "state_used": used / count,

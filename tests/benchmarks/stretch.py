@@ -10,9 +10,10 @@ import taichi as ti
 from numpy.typing import NDArray
 
 from engine.backend import mat3, overwrite, vec3
-from engine.constitution import Constitution, ddot
+from engine.constitution import Constitution, ddot, strain_increment
 from engine.particles import Arrays
-from engine.tensors import identity, pack, symmetric, unpack
+from engine.strength import retained
+from engine.tensors import identity, pack, unpack
 
 
 @ti.data_oriented
@@ -38,8 +39,8 @@ class StretchConstitution(Constitution):
         m = self.table[body]
         F = (identity() + dt * L) @ self.F[p]
         J = F.determinant()
-        d = symmetric(L)
-        half_work = 0.5 * dt / m.rho0 * ddot(unpack(self.particles.tau[p]), d)
+        strain = strain_increment(dt * L)
+        half_work = 0.5 / m.rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E = self.energy.after(p, 2.0 * half_work)
         P, c2 = self.pressure.pressure(1.0 / J - 1.0, E, body)
         if P < 0.0:
@@ -47,7 +48,7 @@ class StretchConstitution(Constitution):
         F, s, largest = self.shear_part(F, J, P, E, p)
         tau = s - J * P * identity()
         self.F[p], self.particles.tau[p] = F, pack(tau)
-        self.energy.add(p, half_work + 0.5 * dt / m.rho0 * ddot(tau, d))
+        self.energy.add(p, half_work + 0.5 / m.rho0 * ddot(tau, strain))
         self.damage.root[p] = self.grow(largest / J - P, dt, p)
         return self.wave_speed(c2, body), 0.0
 
@@ -60,7 +61,7 @@ class StretchConstitution(Constitution):
         logs = vec3(ti.log(S[0, 0]), ti.log(S[1, 1]), ti.log(S[2, 2]))
         strain = logs - logs.sum() / 3.0
         root_J2 = 2.0 * G / J * ti.sqrt(0.5 * strain.norm_sqr())
-        share = self.shear.strength.retained(root_J2, P, E, self.damage.value(p), body)
+        share = retained(root_J2, self.shear.strength.limit(P, E, self.damage.value(p), body))
         elastic = F
         if share < 1.0:
             elastic = U @ diagonal(ti.exp(logs - (1.0 - share) * strain)) @ V.transpose()

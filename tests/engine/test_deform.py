@@ -5,7 +5,7 @@ from scipy.spatial.transform import Rotation
 
 from engine.backend import mat3
 from engine.shear import deform
-from engine.tensors import deviator, half_log, unpack
+from engine.tensors import determinant_increment, deviator, half_log, unpack
 from tests.engine.device import Array, compose, norm, rotations, traceless, worst
 from tests.engine.oracle import log_strain
 from tests.engine.point import unpacked
@@ -23,7 +23,9 @@ def repeat(A: Matrices, steps: ti.i32, B: Components, j: Scalars):
     for p in range(A.shape[0]):
         strain, volume = B[p], j[p]
         for _ in range(steps):
-            strain, volume = deform(strain, volume, A[p])
+            growth = determinant_increment(A[p])
+            strain = deform(strain, A[p], growth)
+            volume += (1.0 + volume) * growth
         B[p], j[p] = strain, volume
 
 

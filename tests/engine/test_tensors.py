@@ -39,8 +39,8 @@ PATTERNS = np.array(
 )
 """Eigenvalues: distinct, two or three (nearly) equal, isotropic, sheared, negative definite, of unlike size, zero."""
 
-SIZES = (1e-8, 1e-6, 1e-2, 0.19, 0.21, 0.3, 0.9)
-"""Largest eigenvalue; the series ends and the eigenvectors begin at a norm of 0.2."""
+SIZES = (1e-8, 1e-6, 1e-2, 0.049, 0.051, 0.3, 0.9)
+"""Largest eigenvalue; the series ends and the eigenvectors begin at a norm of 0.05."""
 
 
 def tensors(*sizes: float) -> Array:
