@@ -22,6 +22,8 @@ ATTRIBUTES = {
     "gravitational_energy": ("gravitational energy", "J"),
     "total_energy": ("kinetic, affine, internal and gravitational energy; what is lost is numerical dissipation", "J"),
     "gravity_change": ("relative change of gravity over the interval for which it was held", "1"),
+    "largest_speed": ("highest speed of a particle", "m s-1"),
+    "largest_compression": ("highest rho/rho0 of a particle", "1"),
     "damaged_fraction": ("mean damage of all particles", "1"),
     "isolated": ("particles that share no block with another", "1"),
 }
