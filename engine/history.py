@@ -24,6 +24,8 @@ ATTRIBUTES = {
     "gravity_change": ("relative change of gravity over the interval for which it was held", "1"),
     "gravity_force": ("net force of gravity, which is taken out, over the sum of all forces", "1"),
     "gravity_torque": ("net torque of gravity, which is taken out, over the sum of forces times distances", "1"),
+    "largest_speed": ("highest speed of a particle", "m s-1"),
+    "largest_compression": ("highest rho/rho0 of a particle", "1"),
     "damaged_fraction": ("mean damage of all particles", "1"),
     "isolated": ("particles that share no block with another", "1"),
 }

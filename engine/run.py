@@ -151,6 +151,7 @@ class Run:
     def _row(self) -> Row:
         """The row of the history for the present moment."""
         simulation = self.simulation
+        state = simulation.particles.read("v", "j", "root")
         return as_row(
             simulation.totals(),
             time=simulation.time,
@@ -159,7 +160,9 @@ class Run:
             gravity_change=simulation.gravity_change,
             gravity_force=simulation.gravity_force,
             gravity_torque=simulation.gravity_torque,
-            damaged_fraction=float(np.mean(simulation.particles.read("root")["root"] ** 3)),
+            largest_speed=float(np.linalg.norm(state["v"], axis=1).max()),
+            largest_compression=float(1.0 / (1.0 + state["j"].min())),
+            damaged_fraction=float(np.mean(state["root"] ** 3)),
             isolated=float(simulation.transfer.alone_count[None]),
         )
 
