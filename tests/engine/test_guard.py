@@ -220,7 +220,9 @@ def test_a_run_that_goes_bad_keeps_its_checkpoint(tmp_path: Path, taichi: None) 
     velocity = simulation.particles.read("v")["v"]
     velocity[7] = [3e5, 0.0, 0.0]
     simulation.particles.write({"v": velocity})
-    save_checkpoint(job, simulation, {"history_due": given.start_time, "snapshot_due": np.inf, "wall_time": 0.0, "cpu_time": 0.0})
+    save_checkpoint(
+        job, simulation, {"history_due": given.start_time, "snapshot_due": np.inf, "wall_time": 0.0, "cpu_time": 0.0}
+    )
     before = job.checkpoint.read_bytes()
     status = Run(given, job, Options(checkpoint_interval=0.0)).to_end()
     assert status.state == "failed" and job.status().fault == status.fault
