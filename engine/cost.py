@@ -11,7 +11,7 @@ from engine import backend
 from engine.checkpoint import load_checkpoint
 from engine.jobdir import JobDirectory
 from engine.parts import parts_of
-from engine.scene import read_scene, scene_in
+from engine.scene import Scene, read_scene, scene_in
 from engine.simulation import Simulation
 
 
@@ -73,9 +73,7 @@ def measure(source: Path, steps: int, arch: str, threads: int) -> Measurement:
     """
     scene = scene_in(source) if source.is_dir() else read_scene(source)
     backend.start(arch, threads)
-    simulation = Simulation(scene)
-    if not (source.is_dir() and load_checkpoint(JobDirectory(source), simulation)):
-        simulation.start()
+    simulation = _begun(scene, source)
     simulation.advance(scene.end_time, steps=1)
     result = Measurement(simulation, simulation.time)
     _watch(result)
@@ -85,6 +83,17 @@ def measure(source: Path, steps: int, arch: str, threads: int) -> Measurement:
             simulation.advance(scene.end_time, steps=1)
     result.steps = simulation.step - first
     return result
+
+
+def _begun(scene: Scene, source: Path) -> Simulation:
+    """The scene at the checkpoint of its job, or at its start when there is none or nothing is left to run."""
+    if source.is_dir():
+        resumed = Simulation(scene)
+        if load_checkpoint(JobDirectory(source), resumed) is not None and not resumed.finished:
+            return resumed
+    simulation = Simulation(scene)
+    simulation.start()
+    return simulation
 
 
 def _watch(result: Measurement) -> None:
