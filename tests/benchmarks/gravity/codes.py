@@ -1,0 +1,105 @@
+"""Gravity of this project and of others behind one face; the others are imported only when asked for."""
+
+import ctypes
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine import backend
+from engine.direct_sum import DirectSum
+from engine.orbit import G
+from engine.particles import Particles
+from engine.tree import Tree
+from tests.benchmarks.gravity.states import State
+from tests.engine.monopoles import Monopoles
+
+Pull = NDArray[np.float64]
+
+
+class Code(ABC):
+    """One code on one state."""
+
+    @abstractmethod
+    def exact(self) -> Pull:
+        """Accelerations [m/s^2] as a sum over all pairs with the code's own softening, shape [particle_count, 3]."""
+
+    @abstractmethod
+    def evaluate(self, opening: float) -> Pull:
+        """The same through the tree, which is built anew."""
+
+
+class Ours(Code):
+    """The engine's tree, from particles on the device to accelerations on the host."""
+
+    def __init__(self, state: State, threads: int, quadrupole: bool) -> None:
+        backend.start(threads=threads)
+        self.particles, self.radius = Particles(len(state.x)), state.radius
+        self.particles.write({"x": state.x, "v": np.zeros_like(state.x), "mass": state.mass})
+        self.tree = (Tree if quadrupole else Monopoles)(self.particles, self.radius, 1.0)
+
+    def exact(self) -> Pull:
+        return DirectSum(self.particles, self.radius).pull(0.0)
+
+    def evaluate(self, opening: float) -> Pull:
+        self.tree.opening[None] = opening
+        return self.tree.pull(0.0)
+
+
+class PyTreeGrav(Code):
+    """pytreegrav (Grudic & Gurvich 2021): an octree in numba; the kernel is a cubic spline of the same support."""
+
+    def __init__(self, state: State, threads: int, quadrupole: bool) -> None:
+        import numba
+        import pytreegrav
+
+        numba.set_num_threads(threads)
+        self.accelerate: Any = pytreegrav.Accel
+        self.given = (state.x, state.mass, np.full(len(state.x), state.radius))
+        self.options = {"G": G, "parallel": threads > 1}
+        self.quadrupole = quadrupole
+
+    def exact(self) -> Pull:
+        return np.asarray(self.accelerate(*self.given, method="bruteforce", **self.options))
+
+    def evaluate(self, opening: float) -> Pull:
+        options = {"theta": opening, "quadrupole": self.quadrupole, **self.options}
+        return np.asarray(self.accelerate(*self.given, method="tree", **options))
+
+
+class Rebound(Code):
+    """rebound (Rein & Liu 2012), as its wheel has it: an octree of monopoles on one thread; Plummer's kernel."""
+
+    def __init__(self, state: State, threads: int, quadrupole: bool) -> None:
+        import rebound
+
+        assert threads == 1 and not quadrupole
+        self.fields = rebound.Particle
+        self.update = rebound.clibrebound.reb_simulation_update_acceleration
+        self.update.argtypes, self.update.restype = [ctypes.c_void_p], None
+        x = state.x - state.x.mean(axis=0)
+        self.simulation = rebound.Simulation()
+        self.simulation.G, self.simulation.softening = G, state.radius
+        self.simulation.root_size = 2.2 * float(np.abs(x).max())
+        for (px, py, pz), mass in zip(x.tolist(), state.mass.tolist(), strict=True):
+            self.simulation.add(rebound.Particle(m=mass, x=px, y=py, z=pz))
+
+    def exact(self) -> Pull:
+        return self._pull("basic")
+
+    def evaluate(self, opening: float) -> Pull:
+        self.simulation.opening_angle2 = opening**2
+        return self._pull("tree")
+
+    def _pull(self, gravity: str) -> Pull:
+        self.simulation.gravity = gravity
+        self.update(ctypes.byref(self.simulation))
+        size, count = ctypes.sizeof(self.fields), self.simulation.N
+        memory = (ctypes.c_char * (count * size)).from_address(ctypes.addressof(self.simulation._particles.contents))
+        records = np.frombuffer(memory, dtype=np.uint8).reshape(count, size)
+        offsets = [getattr(self.fields, name).offset for name in ("ax", "ay", "az")]
+        return np.stack([records[:, o : o + 8].copy().view(np.float64)[:, 0] for o in offsets], axis=1)
+
+
+CODES: dict[str, type[Code]] = {"this project": Ours, "pytreegrav": PyTreeGrav, "rebound": Rebound}

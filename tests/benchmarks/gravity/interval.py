@@ -1,0 +1,46 @@
+"""What a collision loses because gravity is held for an interval, and what the tree's net torque would do to it."""
+
+from typing import Any
+
+import numpy as np
+
+import engine.gravity
+from engine import backend
+from engine.collision import Collision
+from engine.net_effect import NetEffect
+from engine.scene import Gravity
+from engine.simulation import Simulation
+from tests.benchmarks.child import answer
+
+PARTICLES, AFTER_CONTACT = 1000, 6000.0
+
+
+def measure(interval: float, corrected: bool) -> dict[str, Any]:
+    """Drift of energy and angular momentum of a (100 m/s, 15 deg) collision; `corrected` as the engine does it."""
+    backend.start(threads=1)
+    if not corrected:
+        engine.gravity.without_net_effect = lambda pull, x, mass: (pull, NetEffect(0.0, 0.0))
+    gravity = Gravity(interval=interval)
+    collision = Collision(velocity=100.0, angle=15.0, particles=PARTICLES, end_time=AFTER_CONTACT, gravity=gravity)
+    simulation = Simulation(collision.scene())
+    simulation.start()
+    begin, residuals = simulation.totals(), []
+    while not simulation.finished:
+        simulation.advance(simulation.time + interval)
+        residuals.append((simulation.gravity_force, simulation.gravity_torque))
+    end = simulation.totals()
+    force, torque = np.mean(residuals, axis=0)
+    lost = np.linalg.norm(end.angular_momentum - begin.angular_momentum) / np.linalg.norm(begin.angular_momentum)
+    return {
+        "interval": interval,
+        "corrected": corrected,
+        "steps": simulation.step,
+        "energy": (end.total_energy - begin.total_energy) / begin.kinetic_energy,
+        "angular_momentum": float(lost),
+        "force": float(force),
+        "torque": float(torque),
+    }
+
+
+if __name__ == "__main__":
+    answer(measure)

@@ -1,0 +1,38 @@
+"""Time of one evaluation of gravity against the number of particles, with the default opening."""
+
+from typing import Any
+
+from engine import backend
+from engine.particles import Particles
+from engine.scene import Gravity
+from engine.tree import Tree
+from tests.benchmarks.child import answer
+from tests.benchmarks.gravity.states import sphere
+from tests.benchmarks.stopwatch import Stopwatch
+
+LAPS = 5
+
+
+def measure(count: int, threads: int) -> dict[str, Any]:
+    """Least CPU time [ms] of the arrangement, of tree and walk, and of all that a simulation calls."""
+    backend.start(threads=threads)
+    state = sphere(count)
+    particles = Particles(count)
+    particles.write({"x": state.x, "v": 0.0 * state.x, "mass": state.mass})
+    tree = Tree(particles, state.radius, Gravity().opening)
+    tree.accelerate(0.0)
+    watches = {"arrange": Stopwatch(), "solve": Stopwatch(), "accelerate": Stopwatch()}
+    for _ in range(LAPS):
+        with watches["arrange"].lap():
+            tree.arrange(state.x)
+        with watches["solve"].lap():
+            tree.solve(potential=False)
+            backend.ti.sync()
+        with watches["accelerate"].lap():
+            tree.accelerate(0.0)
+    cpu = {name: 1e3 * min(watch.cpu) for name, watch in watches.items()}
+    return {"count": count, "threads": threads, **cpu, "wall": 1e3 * min(watches["accelerate"].wall)}
+
+
+if __name__ == "__main__":
+    answer(measure)
