@@ -72,15 +72,14 @@ class StretchConstitution(Constitution):
     @ti.func
     def grow(self, tension, dt, p):
         """Cube root of damage after a step under a largest principal stress [Pa]."""
-        fracture = ti.static(self.damage.fracture)
-        m, root = fracture.table[self.particles.body[p]], self.damage.root[p]
-        first, end = fracture.first[p], fracture.first[p + 1]
+        m, root = self.damage.fracture.table[self.particles.body[p]], self.damage.root[p]
+        first, end = self.damage.fracture.first[p], self.damage.fracture.first[p + 1]
         flaw = first
-        while flaw < end and fracture.strain[flaw] < tension / m.modulus:
+        while flaw < end and self.damage.fracture.strain[flaw] < tension / m.modulus:
             flaw += 1
         active = flaw - first
         if active > 0:
-            cracks = active if ti.static(fracture.per_flaw) else 1
+            cracks = active if ti.static(self.damage.fracture.per_flaw) else 1
             root = ti.max(root, ti.min(root + cracks * m.rate * dt, (active / (end - first)) ** (1.0 / 3.0)))
         return root
 
