@@ -97,6 +97,7 @@ class SelfGravity(ABC):
         """Acceleration of particle p [m/s^2], held since it was last set."""
         return self.acceleration[p]
 
+    @ti.func
     def load(self, values: ti.template(), t):
         """The values of the row of targets that begins at t."""
         return self.row([values[t + i] for i in range(self.lanes)])
