@@ -20,7 +20,7 @@ from engine.tensors import identity, pack, unpack
 class StretchConstitution(Constitution):
     """Stress, energy and damage of one particle from the singular values of its deformation gradient F.
 
-    The arguments are those of `Constitution`; B and j of the particles give F at the start and are not used again.
+    The arguments are those of `Constitution`; B and j of the particles give F at the start, and B is not used again.
     """
 
     def __init__(self, *parts: Any) -> None:
@@ -47,7 +47,7 @@ class StretchConstitution(Constitution):
             P *= 1.0 - self.damage.value(p)
         F, s, largest = self.shear_part(F, J, P, E, p)
         tau = s - J * P * identity()
-        self.F[p], self.particles.tau[p] = F, pack(tau)
+        self.F[p], self.particles.j[p], self.particles.tau[p] = F, J - 1.0, pack(tau)
         self.energy.add(p, half_work + 0.5 / m.rho0 * ddot(tau, strain))
         self.damage.root[p] = self.grow(largest / J - P, dt, p)
         return self.wave_speed(c2, body), 0.0
