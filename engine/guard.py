@@ -19,7 +19,7 @@ SPEED_FACTOR = 10.0
 """Largest speed in units of the scene's: rebounds reach two or three of them, jets a few."""
 
 ENERGY_GROWTH = 0.05
-"""Largest growth of the total energy, in the measure of `energy_growth`."""
+"""Largest growth of the total energy, in the measure of `energy_growth`; all of it is the most that can be lost."""
 
 ROUNDINGS = 1e6
 """Largest change of the total momentum, in units of the last place of mass times the scene's speeds."""
@@ -87,8 +87,9 @@ class Guard:
 
     def _check_energy(self, row: Row, time: float) -> None:
         growth = energy_growth(self.scene, row, self.start)
-        if keeps_energy(self.scene) and not growth <= ENERGY_GROWTH:
-            raise stop("growth of total energy, as a share of it", growth, f"at most {ENERGY_GROWTH:g}", time)
+        if keeps_energy(self.scene) and not -1.0 <= growth <= ENERGY_GROWTH:
+            allowed = f"between -1 and {ENERGY_GROWTH:g}"
+            raise stop("growth of total energy, as a share of all energies", growth, allowed, time)
 
 
 def require_finite(state: Arrays, time: float) -> None:

@@ -20,6 +20,7 @@ ATTRIBUTES = {
     "internal_energy": ("work done by stress, elastic energy included", "J"),
     "elastic_energy": ("energy stored in elastic strain, a part of internal_energy", "J"),
     "gravitational_energy": ("gravitational energy", "J"),
+    "half_step_work": ("work in half a step: takes kinetic energy to the time of the other energies", "J"),
     "total_energy": ("kinetic, affine, internal and gravitational energy; what is lost is numerical dissipation", "J"),
     "gravity_change": ("relative change of gravity over the interval for which it was held", "1"),
     "gravity_force": ("net force of gravity, which is taken out, over the sum of all forces", "1"),

@@ -23,6 +23,8 @@ class Totals:
         internal_energy: all work done by stress, so elastic energy too [J].
         elastic_energy: part of the internal energy that is stored in strain [J].
         gravitational_energy: [J].
+        half_step_work: of stress and gravity in half the next step [J]: velocities belong half a step before positions, so
+            this takes kinetic energy to the time of the others.
     """
 
     mass: float
@@ -33,6 +35,7 @@ class Totals:
     internal_energy: float
     elastic_energy: float
     gravitational_energy: float
+    half_step_work: float
 
     @property
     def total_energy(self) -> float:
@@ -40,14 +43,16 @@ class Totals:
         return self.kinetic_energy + self.affine_kinetic_energy + self.internal_energy + self.gravitational_energy
 
 
-def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: float) -> Totals:
+def totals(
+    state: Arrays, dx: float, elastic: Vector, gravitational_energy: float, half_step_work: float
+) -> Totals:
     """Conserved quantities of a state.
 
     Args:
         state: fields x, v, C, E and mass of every particle.
         dx: grid spacing [m].
         elastic: elastic energy of every particle [J], shape [particle_count].
-        gravitational_energy: [J].
+        gravitational_energy, half_step_work: [J].
     """
     m, x, v, C = state["mass"], state["x"], state["v"], state["C"]
     inertia = 0.25 * dx**2  # second moment of the quadratic spline, per mass
@@ -61,7 +66,23 @@ def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: floa
         internal_energy=float(np.sum(m * state["E"])),
         elastic_energy=float(np.sum(elastic)),
         gravitational_energy=gravitational_energy,
+        half_step_work=half_step_work,
     )
+
+
+def half_step_work(state: Arrays, rho0: Vector, dt: float) -> float:
+    """Work [J] of stress and gravity on the particles' present motion in half a step.
+
+    Args:
+        state: fields v, C, tau, mass and acceleration of every particle.
+        rho0: reference density of every particle [kg/m^3], shape [particle_count].
+        dt: the next time step [s].
+    """
+    tau, C, m = state["tau"], state["C"], state["mass"]
+    shear = tau[:, 3] * (C[:, 1, 2] + C[:, 2, 1]) + tau[:, 4] * (C[:, 0, 2] + C[:, 2, 0])
+    shear += tau[:, 5] * (C[:, 0, 1] + C[:, 1, 0])
+    strain = np.einsum("pi,pii->p", tau[:, :3], C) + shear
+    return 0.5 * dt * float(np.sum(m * (np.einsum("pi,pi->p", state["v"], state["acceleration"]) - strain / rho0)))
 
 
 def elastic_energy(state: Arrays, rho0: Vector, bulk: Vector, shear: Vector) -> Vector:

@@ -13,7 +13,7 @@ from engine.clock import FAULT_NONE, Clock
 from engine.errors import stop
 from engine.gravity import SelfGravity
 from engine.initial import initial_state
-from engine.ledger import Totals, elastic_energy, totals
+from engine.ledger import Totals, elastic_energy, half_step_work, totals
 from engine.materials import Material
 from engine.particles import Arrays, Particles
 from engine.scene import Scene
@@ -158,12 +158,12 @@ class Simulation:
 
     def totals(self) -> Totals:
         """What the run must conserve, now."""
-        state = self.particles.read("x", "v", "C", "E", "mass", "j", "tau", "body")
-        materials = self.scene.materials
+        state = self.particles.read("x", "v", "C", "E", "mass", "j", "tau", "body", "acceleration")
+        materials, rho0 = self.scene.materials, self.rho0(state)
         bulk = np.array([material.tillotson.A for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
-        elastic = elastic_energy(state, self.rho0(state), bulk, shear)
-        return totals(state, self.scene.dx, elastic, self.gravity.energy())
+        elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, rho0, self.next_dt)
+        return totals(state, self.scene.dx, elastic, self.gravity.energy(), work)
 
     def rho0(self, state: Arrays) -> NDArray[np.float64]:
         """Reference density of every particle [kg/m^3], shape [particle_count]."""

@@ -49,7 +49,7 @@ def state_of(given: Scene) -> Arrays:
 
 
 def row_of(state: Arrays, gravity: float = 0.0) -> Row:
-    return as_row(totals(state, 1.0, np.zeros(len(state["mass"])), gravity), time=5.0)
+    return as_row(totals(state, 1.0, np.zeros(len(state["mass"])), gravity, 0.0), time=5.0)
 
 
 def guard_of(given: Scene) -> tuple[Guard, Arrays]:
@@ -160,7 +160,12 @@ def test_energy_may_be_lost_but_not_won():
     guard, state = guard_of(given)
     row = row_of(state)
     kinetic = float(row["kinetic_energy"])
-    for change, passes in ((-0.9, True), (0.99 * ENERGY_GROWTH, True), (1.01 * ENERGY_GROWTH, False)):
+    for change, passes in (
+        (-1.01, False),
+        (-0.99, True),
+        (0.99 * ENERGY_GROWTH, True),
+        (1.01 * ENERGY_GROWTH, False),
+    ):
         now = {**row, "total_energy": row["total_energy"] + change * kinetic}
         assert energy_growth(given, now, row) == pytest.approx(change, rel=1e-6)
         if passes:
