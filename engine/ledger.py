@@ -23,8 +23,8 @@ class Totals:
         internal_energy: all work done by stress, so elastic energy too [J].
         elastic_energy: part of the internal energy that is stored in strain [J].
         gravitational_energy: [J].
-        half_step_work: of stress and gravity in half the next step [J]: velocities belong half a step before positions, so
-            this takes kinetic energy to the time of the others.
+        half_step_work: of stress and gravity in half the next step [J]: velocities belong half a step before positions,
+            so this takes kinetic energy to the time of the others.
     """
 
     mass: float
@@ -43,9 +43,7 @@ class Totals:
         return self.kinetic_energy + self.affine_kinetic_energy + self.internal_energy + self.gravitational_energy
 
 
-def totals(
-    state: Arrays, dx: float, elastic: Vector, gravitational_energy: float, half_step_work: float
-) -> Totals:
+def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: float, half_step_work: float) -> Totals:
     """Conserved quantities of a state.
 
     Args:
