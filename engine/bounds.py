@@ -57,8 +57,8 @@ def energy_growth(scene: Scene, row: Row, start: Row) -> float:
     """Growth of the total energy as a share of all energies that can turn into one another [-].
 
     The total is that of one time, kinetic energy taken half a step ahead: the work of stress then changes nothing in
-    it, and only the transfer does, which dissipates. Taken as it is, it would swing by up to omega dt/2 with the shortest
-    waves. Growth that is smaller than the dissipation meanwhile does not show.
+    it, and only the transfer does, which dissipates. Taken as it is, it would swing by up to omega dt/2 with the
+    shortest waves. Growth that is smaller than the dissipation meanwhile does not show.
 
     Args:
         scene: what is simulated.
