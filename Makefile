@@ -17,7 +17,7 @@ RESOURCES = $(if $(WORKERS),--workers $(WORKERS)) $(if $(THREADS),--threads-per-
 THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; exit $$code
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign resume plan status plots accuracy test test-slow bench bench-gravity lint clean
+.PHONY: help install campaign resume plan status plots accuracy stability test test-slow bench bench-gravity lint clean
 
 help: ## explain all targets
 	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
@@ -50,6 +50,9 @@ accuracy: $(INSTALLED) ## turn every numerical setting of scenes and of a collis
 	@$(RUN) engine accuracy '$(RUNS)/verification' $(if $(WORKERS),--workers $(WORKERS))
 	@$(RUN) campaigns run accuracy --runs '$(RUNS)' $(RESOURCES) ; code=$$?; \
 		[ $$code -gt 1 ] || $(RUN) analysis accuracy '$(RUNS)/accuracy'; exit $$code
+
+stability: $(INSTALLED) ## run stiff and extreme cases; each is stable, or stopped with a reason
+	@$(RUN) engine stability '$(RUNS)/stability'
 
 test: $(INSTALLED) ## run the fast tests
 	$(RUN) pytest

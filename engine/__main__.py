@@ -135,6 +135,37 @@ def accuracy(
     typer.echo(orders(runs).to_string(index=False, float_format="%.2f"))
 
 
+@application.command()
+def stability(
+    directory: Annotated[Path, typer.Argument(help="Where stability.nc, stability.csv and the jobs are written.")],
+) -> None:
+    """Run stiff and extreme cases: each must be stable, or be stopped by a guard that names itself.
+
+    Exit code 0: none failed and no physical one was stopped; 1: one did.
+    """
+    from engine import backend
+    from engine.storage import write_dataset
+    from engine.verification.stability.cases import all_cases
+    from engine.verification.stability.outcome import dataset, run_case
+    from engine.verification.stability.von_neumann import BLOCKS
+
+    if directory.exists():
+        _exit(f"{directory}: exists already; name a new directory", BAD_INPUT)
+    outcomes = []
+    for number, case in enumerate(all_cases()):
+        outcomes.append(run_case(case, directory / "jobs" / f"{number:03d}"))
+        last = outcomes[-1]
+        typer.echo(f"{last.group:18} {last.name:28} {last.verdict:8} {last.steps:7d} steps  {last.reason}")
+    for block in BLOCKS:
+        backend.start(threads=1)
+        limits = f"{block.measured():.3f}, theory {block.theory():.3f}"
+        typer.echo(f"largest stable c dt/dx, {block.name} particles of a cell along its edges: {limits}")
+    table = dataset(outcomes)
+    write_dataset(directory / "stability.nc", table)
+    table.to_dataframe().to_csv(directory / "stability.csv", index=False)
+    raise typer.Exit(DONE if all(outcome.acceptable for outcome in outcomes) else FAILED)
+
+
 def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) -> Status:
     """Import the engine only now: bad options and missing directories answer at once."""
     from engine.run import Options, run_job

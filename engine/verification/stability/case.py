@@ -1,0 +1,96 @@
+"""One case of the matrix, and the scenes most of them are made of."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.body import Body
+from engine.collision import Collision
+from engine.materials import Material
+from engine.particles import Arrays
+from engine.scene import Numerics, Physics, Scene
+
+Changes = Callable[[Scene], dict[str, NDArray[Any]]]
+
+PARTICLES = 100
+"""Particles of a body."""
+ROWS = 40
+"""Rows of the history of a case."""
+
+
+def as_it_is(scene: Scene) -> Arrays:
+    """No change of the initial state."""
+    return {}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, the state it starts from, and whether it may be stopped.
+
+    Attributes:
+        group: what is extreme.
+        name: how extreme.
+        scene: what runs; a valid one unless a validated limit is what the case exceeds.
+        changes: fields of the initial state that replace the scene's own.
+        physical: matter and motion that can be, with settings that the engine recommends: must not be stopped.
+    """
+
+    group: str
+    name: str
+    scene: Scene
+    changes: Changes = as_it_is
+    physical: bool = True
+
+
+def impact(velocity: float = 200.0, angle: float = 15.0, share: float = 1.0, **settings: Any) -> Scene:
+    """Two bodies of R = 50 km that meet, until they could be two diameters apart or 2,000 s are over.
+
+    Args:
+        velocity: at contact [m/s].
+        angle: impact angle [deg].
+        share: of that time.
+        settings: of the collision.
+    """
+    chosen = {"particles": PARTICLES, "start_separation": 1.1, **settings}
+    end_time = share * min(8.0 * chosen.get("radius", 50e3) / velocity, 2000.0)
+    scene = Collision.model_validate({"velocity": velocity, "angle": angle, "end_time": end_time, **chosen}).scene()
+    return with_rows(scene)
+
+
+def alone(
+    end_time: float = 500.0, particles: int = PARTICLES, physics: Physics | None = None, **settings: Any
+) -> Scene:
+    """One body of R = 50 km by itself, unstressed; settings are its own."""
+    body = Body.model_validate({"radius": 50e3, "particles": particles, "hydrostatic": False, **settings})
+    return with_rows(Scene(bodies=(body,), end_time=end_time, physics=physics or Physics()))
+
+
+def with_rows(scene: Scene) -> Scene:
+    """The scene with a row of the history for every part of its time, and no snapshots."""
+    interval = (scene.end_time - scene.start_time) / ROWS
+    output = scene.output.model_copy(update={"history_interval": interval, "snapshot_interval": None})
+    return scene.model_copy(update={"output": output})
+
+
+def with_courant_number(scene: Scene, cfl: float) -> Scene:
+    """The scene at a time step that validation might refuse."""
+    return scene.model_copy(update={"numerics": Numerics().model_copy(update={"cfl": cfl})})
+
+
+def stiffened(factor: float) -> Material:
+    """Basalt of other elastic moduli."""
+    return Material().slowed(factor**0.5)
+
+
+def with_materials(scene: Scene, *materials: Material) -> Scene:
+    """The scene with another material for each body."""
+    bodies = zip(scene.bodies, materials, strict=True)
+    return scene.model_copy(update={"bodies": tuple(b.model_copy(update={"material": m}) for b, m in bodies)})
+
+
+def uniform(**values: float) -> Changes:
+    """Fields that have the same value everywhere."""
+    return lambda scene: {name: np.full(scene.particles, value) for name, value in values.items()}

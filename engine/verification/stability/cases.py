@@ -1,0 +1,147 @@
+"""The matrix of stiff and extreme cases."""
+
+from engine.body import Body
+from engine.scene import Gravity, Physics, Scene, Viscosity
+from engine.verification.rock import elastic
+from engine.verification.stability import states
+from engine.verification.stability.case import (
+    Case,
+    alone,
+    impact,
+    stiffened,
+    uniform,
+    with_courant_number,
+    with_materials,
+    with_rows,
+)
+
+RUBBLE = Physics(fracture=None)
+FREE = Physics(gravity=None)
+LOOSE = Physics(fracture=None, gravity=None)
+SHOCK = Viscosity(shock_linear=0.5, shock_quadratic=1.5)
+FLUID = Physics(shear=False, strength=False, fracture=None, gravity=None)
+
+
+def broken(scene: Scene) -> Scene:
+    """The scene with bodies of rubble."""
+    bodies = tuple(body.model_copy(update={"damage": 1.0}) for body in scene.bodies)
+    physics = scene.physics.model_copy(update={"fracture": None})
+    return scene.model_copy(update={"bodies": bodies, "physics": physics})
+
+
+def pair(velocity: tuple[float, float, float]) -> Scene:
+    """Two bodies of one particle; the second moves [m/s]."""
+    one = Body(radius=50e3, particles=1, hydrostatic=False)
+    return with_rows(Scene(bodies=(one, one.model_copy(update={"velocity": velocity})), end_time=500.0, physics=LOOSE))
+
+
+def _time_steps() -> list[Case]:
+    """Up to the recommended Courant number all must run; 10 is twenty times as much, and 5 ten times."""
+    numbers = (0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 5.0)
+    return [
+        Case("Courant number", f"{cfl:g}", with_courant_number(impact(), cfl), physical=cfl <= 0.5) for cfl in numbers
+    ] + [Case("Courant number", "5, at rest", with_courant_number(alone(hydrostatic=True), 5.0), physical=False)]
+
+
+def _materials() -> list[Case]:
+    factors = (1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3)
+    moduli = [
+        Case("moduli", f"x {factor:g}", with_materials(impact(share=0.5), stiffened(factor), stiffened(factor)))
+        for factor in factors
+    ]
+    pairs = ((1.0, 1e-4), (1e-4, 1.0), (100.0, 0.01))
+    contrasts = [
+        Case("contrast", f"{a:g} on {b:g}", with_materials(impact(share=0.5), stiffened(b), stiffened(a)))
+        for a, b in pairs
+    ]
+    frictions = [Case("friction", f"{mu:g}", broken(impact(friction=mu))) for mu in (0.0, 0.839, 2.0, 100.0)]
+    return moduli + contrasts + frictions
+
+
+def _impacts() -> list[Case]:
+    speeds = (1.0, 10.0, 50.0, 1e3, 5e3, 1e4, 2e4)
+    by_speed = [Case("speed", f"{v:g} m/s", impact(velocity=v)) for v in speeds]
+    head_on = [Case("speed", f"{v:g} m/s, head-on", impact(velocity=v, angle=0.0)) for v in (200.0, 5e3, 2e4)]
+    fine = {"velocity": 2e4, "particles": 300}
+    head_on += [Case("speed", f"20000 m/s, 2 x 300, seed {seed}", impact(**fine, seed=seed)) for seed in (2, 3)]
+    angles = [Case("angle", f"{angle:g} deg", impact(angle=angle)) for angle in (0.0, 45.0, 80.0, 89.9)]
+    small = {"particles": 1000, "projectile_radius": 5e3}
+    ratios = [Case("mass ratio", f"1:1000 at {v:g} m/s", impact(velocity=v, share=0.1, **small)) for v in (200.0, 5e3)]
+    ratios.append(Case("mass ratio", "1:8", impact(projectile_radius=25e3)))
+    sizes = [
+        Case("radius", "100 m", impact(radius=100.0)),
+        Case("radius", "10 km", impact(radius=10e3)),
+        Case("radius", "500 km", impact(radius=500e3, velocity=1000.0)),
+        Case("radius", "1000 km", impact(radius=1000e3, velocity=2000.0)),
+    ]
+    return by_speed + head_on + angles + ratios + sizes
+
+
+def _states() -> list[Case]:
+    compressed = [
+        Case("compressed", f"rho/rho0 = {eta:g}", alone(100.0, physics=FREE), states.strained(eta))
+        for eta in (1.1, 1.5, 2.0)
+    ]
+    pulled = [
+        Case("stretched", f"J = {J:g}, D = {D:g}", alone(100.0, physics=FREE, damage=D), states.strained(1.0 / J, D))
+        for J in (1.5, 5.0, 50.0)
+        for D in (0.0, 1.0)
+    ]
+    pulled += [
+        Case("stretched", f"to J = 50 at {rate * 50e3:g} m/s", alone(2.7 / rate, physics=FREE), states.expanding(rate))
+        for rate in (2e-3, 2e-2, 0.2)
+    ]
+    hot = [
+        Case("hot", f"E = {E:g} J/kg", alone(100.0, physics=FREE), uniform(E=E)) for E in (0.0, 1e6, 1e7, 2e7, 1e8, 1e9)
+    ]
+    hot.append(Case("hot", "one particle, 1e8 J/kg", alone(100.0, physics=FREE), states.one_hot(1e8)))
+    break_up = 8.69e-4  # sqrt(4 pi G rho / 3)
+    spins = [
+        Case("spin", f"{factor:g} of break-up", alone(2000.0, spin=(0.0, 0.0, factor * break_up), damage=damage))
+        for factor, damage in ((1.0, 0.0), (1.0, 1.0), (3.0, 1.0), (10.0, 0.0))
+    ]
+    return compressed + pulled + hot + spins
+
+
+def _few_and_odd() -> list[Case]:
+    counts = [Case("particles", f"2 x {n}", impact(particles=n)) for n in (1, 2, 10)]
+    counts += [Case("particles", str(n), alone(particles=n, hydrostatic=True)) for n in (1, 2)]
+    places = [
+        Case("place", "all in one point", alone(), states.coincident(1), physical=False),
+        Case("place", "all in two points", alone(), states.coincident(2), physical=False),
+        Case("place", "two in one point", alone(particles=2), states.coincident(1), physical=False),
+        Case("place", "a node of weight 1e-15", pair((0.0, 0.0, 0.0)), states.barely_touching),
+        Case("place", "1e8 m away", impact(share=0.2), states.distant(1e8)),
+        Case("place", "out of the grid's range", pair((2e4, 0.0, 0.0)), states.near_the_edge, physical=False),
+    ]
+    return [
+        *counts,
+        *places,
+        Case("parts", "damage 1 everywhere", broken(impact())),
+        Case("parts", "without energy", impact().model_copy(update={"physics": Physics(energy=False)})),
+        Case("parts", "fluid", impact().model_copy(update={"physics": FLUID})),
+        Case("parts", "set talk", impact(parameter_set="talk")),
+        Case("parts", "viscosity 3e5 m2/s", impact(viscosity=Viscosity(shear=3e5))),
+        Case("parts", "shock viscosity, 5 km/s", impact(5e3, viscosity=SHOCK)),
+        Case("parts", "sound speed x 0.1, 10 m/s", impact(10.0, sound_speed=0.1)),
+    ]
+
+
+def _flows() -> list[Case]:
+    soft = elastic(2700.0, 1.0, 1.0)
+    gravity = Gravity(softening=0.3, interval=1.0, opening=0.3)
+    pressureless = Physics(shear=False, strength=False, fracture=None, gravity=gravity)
+    return [
+        Case("flow", "rubble expands", alone(500.0, physics=LOOSE, damage=1.0), states.expanding(2e-3)),
+        Case("flow", "rubble flows together", alone(500.0, physics=LOOSE, damage=1.0), states.expanding(-2e-3)),
+        Case("flow", "dust falls through a point", alone(2000.0, physics=pressureless, material=soft, damage=1.0)),
+        Case("flow", "rubble in random motion", alone(500.0, physics=RUBBLE), states.random_motion(100.0, 1e-2)),
+        Case(
+            "flow", "violent random motion", alone(50.0, physics=LOOSE), states.random_motion(5e3, 1.0), physical=False
+        ),
+    ]
+
+
+def all_cases() -> list[Case]:
+    """Every case, group by group."""
+    return _time_steps() + _materials() + _impacts() + _states() + _few_and_odd() + _flows()

@@ -1,0 +1,101 @@
+"""Initial states that no scene of bodies at rest density would have."""
+
+import numpy as np
+
+from engine.blocks import EDGE, HALF_RANGE
+from engine.bounds import cold_energy
+from engine.initial import initial_state
+from engine.materials import Material
+from engine.particles import Arrays
+from engine.scene import Scene
+from engine.verification.stability.case import Changes
+
+
+def strained(eta: float, damage: float = 0.0) -> Changes:
+    """Condensed rock at rho/rho0 = eta and at rest, with the stress and energy of it, below evaporation."""
+
+    def changes(scene: Scene) -> Arrays:
+        material = scene.materials[0]
+        held = 1.0 if eta > 1.0 else 1.0 - damage
+        energy = held * min(cold_energy(material, eta), 0.99 * material.tillotson.E_iv)
+        tau = -held * _condensed_pressure(material, eta, energy) / eta
+        return {
+            # particles where such density puts them
+            "x": initial_state(scene)["x"] * eta ** (-1.0 / 3.0),
+            "j": np.full(scene.particles, 1.0 / eta - 1.0),
+            "E": np.full(scene.particles, energy),
+            "tau": np.tile([tau, tau, tau, 0.0, 0.0, 0.0], (scene.particles, 1)),
+        }
+
+    return changes
+
+
+def _condensed_pressure(material: Material, eta: float, energy: float) -> float:
+    """Tillotson's first branch [Pa]."""
+    t, mu = material.tillotson, eta - 1.0
+    gruneisen = t.a + t.b / (energy / (t.E0 * eta**2) + 1.0)
+    return gruneisen * material.rho0 * eta * energy + t.A * mu + t.B * mu**2
+
+
+def expanding(rate: float) -> Changes:
+    """Velocity H r; a negative H flows together."""
+
+    def changes(scene: Scene) -> Arrays:
+        x = initial_state(scene)["x"]
+        return {"v": rate * x, "C": np.tile(rate * np.eye(3), (len(x), 1, 1))}
+
+    return changes
+
+
+def coincident(places: int) -> Changes:
+    """All particles of all bodies in a few places."""
+
+    def changes(scene: Scene) -> Arrays:
+        x = initial_state(scene)["x"]
+        return {"x": x[np.arange(len(x)) % places]}
+
+    return changes
+
+
+def barely_touching(scene: Scene) -> Arrays:
+    """The second particle reaches the outermost node of the first with a weight of 1e-15, both under pressure."""
+    # of the lowest nodes 0 and 2 of the two, node 2 is common; the weight of the second there is (4e-8)^2/2
+    x = np.array([[0.6, 0.6, 0.6], [3.5 - 4e-8, 0.6, 0.6]])
+    return {**strained(1.1)(scene), "x": x * scene.dx, "v": np.array([[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])}
+
+
+def distant(distance: float) -> Changes:
+    """The last body that far away [m] along a diagonal."""
+
+    def changes(scene: Scene) -> Arrays:
+        state = initial_state(scene)
+        last = state["body"] == len(scene.bodies) - 1
+        return {"x": state["x"] + np.outer(last, distance / np.sqrt(3.0) * np.ones(3))}
+
+    return changes
+
+
+def near_the_edge(scene: Scene) -> Arrays:
+    """The second of two particles a thousand cells inside the range of the grid."""
+    return {"x": np.array([[0.0, 0.0, 0.0], [(EDGE * HALF_RANGE - 1000.0) * scene.dx, 0.0, 0.0]])}
+
+
+def one_hot(energy: float) -> Changes:
+    """One particle [J/kg] amid cold ones."""
+
+    def changes(scene: Scene) -> Arrays:
+        values = np.zeros(scene.particles)
+        values[np.argmin(np.linalg.norm(initial_state(scene)["x"], axis=1))] = energy
+        return {"E": values}
+
+    return changes
+
+
+def random_motion(speed: float, rate: float) -> Changes:
+    """Every particle with a velocity [m/s] and a velocity gradient [1/s] of its own."""
+
+    def changes(scene: Scene) -> Arrays:
+        generator, count = np.random.default_rng(scene.seed), scene.particles
+        return {"v": speed * generator.normal(size=(count, 3)), "C": rate * generator.normal(size=(count, 3, 3))}
+
+    return changes

@@ -1,0 +1,133 @@
+"""Largest stable time step of the linear scheme: theory, and the engine's own by bisection.
+
+Elastic waves u on a periodic block of equal particles. With the operators of section 1 of engine/physics.md (T:
+velocities from grid to particles and back to the grid; D: the velocity gradient of particles from the grid), a step is
+
+    v' = T v - dt f,    f' = f + dt K v',    K = M^-1 sum_p V D^T (lambda tr + 2 mu sym) D,
+
+f being the forces of stress over mass. For a wave of one wave number the eigenvalues z obey
+z^2 - (1 + T - dt^2 K) z + T = 0, so both stay within the unit circle if and only if dt^2 K <= 2 (1 + T). Without the
+damping of the transfer, T = 1, this is dt <= 2/omega.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.body import Box
+from engine.errors import RunFault
+from engine.materials import Material
+from engine.scene import Numerics, Physics, Scene
+from engine.verification.drive import begin
+
+Array = NDArray[np.float64]
+
+CELLS = 4
+"""Edge of the periodic block: waves of one to four cells, the shortest among them."""
+
+DENSE_LIMIT = float(np.sqrt(5.0 / 3.0))
+"""c dt/dx of dense particles: K = 68/35 c^2/dx^2 and T = 13/21 at the shortest wave."""
+
+ROUNDING = 1e-5
+"""Excess of the spectral radius over one that is none: rigid motion is a double eigenvalue."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """A periodic block of elastic basalt.
+
+    Attributes:
+        lattice: particles along its edges.
+        steps: time steps in which an unstable wave must show.
+    """
+
+    lattice: tuple[int, int, int]
+    steps: int = 300
+
+    @property
+    def name(self) -> str:
+        """Particles of a cell along its edges."""
+        return " x ".join(f"{n / CELLS:g}" for n in self.lattice)
+
+    def scene(self, cfl: float) -> Scene:
+        """The block at a time step that validation might refuse."""
+        edge = float(CELLS)
+        per_cell = float(np.prod(self.lattice)) / CELLS**3
+        physics = Physics(strength=False, fracture=None, gravity=None)
+        box = Box(size=(edge,) * 3, lattice=self.lattice, position=(0.5 * edge,) * 3)
+        numerics = Numerics(particles_per_cell=per_cell)
+        scene = Scene(bodies=(box,), period=(edge,) * 3, end_time=1e6, physics=physics, numerics=numerics)
+        return scene.model_copy(update={"numerics": numerics.model_copy(update={"cfl": cfl})})
+
+    def theory(self) -> float:
+        """Largest stable c dt/dx of the matrix of a step."""
+        return bisect(lambda courant: self._spectral_radius(courant) <= 1.0 + ROUNDING)
+
+    def measured(self) -> float:
+        """Largest c dt/dx at which random motion of 1e-9 of the wave speed does not grow in the engine."""
+        return bisect(self._decays)
+
+    def _decays(self, courant: float) -> bool:
+        rng = np.random.default_rng(1)
+        count = int(np.prod(self.lattice))
+        simulation = begin(self.scene(courant), v=1e-6 * rng.normal(size=(count, 3)))
+        try:
+            while simulation.step < self.steps:
+                simulation.advance(1e6)
+        except RunFault:
+            return False
+        return bool(np.abs(simulation.particles.read("v")["v"]).max() < 1e-5)
+
+    def _spectral_radius(self, courant: float) -> float:
+        T, K = self._operators
+        size, dt = len(K), courant
+        step = np.block([[T, -dt * np.eye(size)], [dt * K @ T, np.eye(size) - dt**2 * K]])
+        return float(np.abs(np.linalg.eigvals(step)).max())
+
+    @property
+    def _operators(self) -> tuple[Array, Array]:
+        """T and K on the velocities of all nodes, in units of dx and of the longitudinal speed."""
+        W, D = self._weights()
+        mass = W.sum(axis=0)
+        T = (W.T @ W + 0.25 * np.einsum("pai,paj->ij", D, D)) / mass[:, None]
+        K = _stiffness(D) / np.tile(mass, 3)[:, None]
+        return np.kron(np.eye(3), T), K
+
+    def _weights(self) -> tuple[Array, Array]:
+        """Spline weights, shape [particle, node], and (4/dx) w (x_i - x_p)/dx, shape [particle, 3, node]."""
+        axes = [(np.arange(n) + 0.5) * CELLS / n for n in self.lattice]
+        x = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+        nodes = np.stack(np.meshgrid(*[np.arange(CELLS)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+        offset = (nodes[None] - x[:, None] + 0.5 * CELLS) % CELLS - 0.5 * CELLS
+        distance = np.abs(offset)
+        spline = np.where(distance < 0.5, 0.75 - distance**2, 0.5 * np.maximum(1.5 - distance, 0.0) ** 2)
+        W = spline.prod(axis=2)
+        return W, 4.0 * np.einsum("pi,pia->pai", W, offset)
+
+
+def _stiffness(D: Array) -> Array:
+    """sum_p D^T (lambda tr + 2 mu sym) D with lambda + 2 mu = 1, shape [3 nodes, 3 nodes]."""
+    rock = Material()
+    mu = rock.shear_modulus / rock.longitudinal_modulus
+    nodes = D.shape[2]
+    K = np.empty((3, nodes, 3, nodes))
+    products = np.einsum("pai,pbj->abij", D, D)
+    trace = products[0, 0] + products[1, 1] + products[2, 2]
+    for a in range(3):
+        for b in range(3):
+            # d sigma_a. / d v_b: lambda D_a D_b + mu (D_b D_a + delta_ab D.D)
+            K[a, :, b, :] = (1.0 - 2.0 * mu) * products[a, b] + mu * products[b, a] + mu * (a == b) * trace
+    return K.reshape(3 * nodes, 3 * nodes)
+
+
+def bisect(holds: Callable[[float], bool], low: float = 0.5, high: float = 2.0, digits: float = 2e-3) -> float:
+    """Largest value at which a condition holds that does at the lower end and does not at the upper one."""
+    while high - low > digits:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low
+
+
+BLOCKS = (Block((4, 4, 4)), Block((8, 8, 4)), Block((8, 8, 8)))
