@@ -12,6 +12,7 @@ from rich.console import Console
 
 from engine.errors import JobBusyError, JobError, RunFault, SceneError
 from engine.jobdir import JobDirectory, Status
+from engine.precision import choose
 from engine.validation import suggestion
 
 application = typer.Typer(
@@ -67,10 +68,13 @@ def explain(
 
     Exit code 0: shown; 1: the steps failed; 2: bad input.
     """
-    from engine.cost import measure
-    from engine.explain import report
+    from engine.scene import scene_at
 
     try:
+        choose(scene_at(scene).numerics.precision)
+        from engine.cost import measure
+        from engine.explain import report
+
         with Console(stderr=True).status(f"measuring {steps} steps"):
             result = measure(scene, steps, arch.value, threads)
     except (SceneError, JobError) as error:
@@ -168,10 +172,11 @@ def stability(
 
 def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) -> Status:
     """Import the engine only now: bad options and missing directories answer at once."""
-    from engine.run import Options, run_job
     from engine.scene import scene_in
 
-    scene_in(directory)
+    choose(scene_in(directory).numerics.precision)
+    from engine.run import Options, run_job
+
     logging.basicConfig(
         filename=JobDirectory(directory).log, level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s"
     )

@@ -14,11 +14,19 @@ os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 
 import taichi as ti
 from taichi.lang import impl
+from taichi.lang.util import to_numpy_type
 
 from engine.errors import SceneError
+from engine.precision import VARIABLE, chosen
 
-Real = ti.f64
+PRECISION = chosen()
+"""Name of the precision of this process."""
+
+Real = {"f64": ti.f64, "f32": ti.f32}[PRECISION]
 """Precision of every field and literal."""
+
+EPSILON = float(np.finfo(to_numpy_type(Real)).eps)
+"""Spacing of its numbers at 1."""
 
 vec3 = ti.types.vector(3, Real)
 vec4 = ti.types.vector(4, Real)
@@ -65,6 +73,19 @@ def wait() -> None:
     ti.sync()
 
 
+def require_precision(precision: str) -> None:
+    """Accept only the precision of this process.
+
+    Raises:
+        SceneError: the device modules were imported for another one.
+    """
+    if precision != PRECISION:
+        raise SceneError(
+            f"'numerics.precision': the scene asks for {precision}, but this process computes in {PRECISION}; "
+            f"run it with python -m engine run, or set {VARIABLE}={precision} before the engine is imported"
+        )
+
+
 def on_gpu() -> bool:
     """Whether the running program works on a GPU."""
     return bool(impl.current_cfg().arch != ti.cpu)
@@ -84,7 +105,7 @@ def filled(dtype: Any, values: NDArray[Any]) -> ti.Field:
 
 def overwrite(field: Any, values: NDArray[Any]) -> None:
     """Fill the first entries of a field with `values`, and the rest with zeros."""
-    padded = np.zeros((field.shape[0], *values.shape[1:]), dtype=values.dtype)
+    padded = np.zeros((field.shape[0], *values.shape[1:]), dtype=to_numpy_type(field.dtype))
     padded[: len(values)] = values
     field.from_numpy(padded)
 

@@ -11,7 +11,7 @@ from engine import backend
 from engine.checkpoint import load_checkpoint
 from engine.jobdir import JobDirectory
 from engine.parts import parts_of
-from engine.scene import Scene, read_scene, scene_in
+from engine.scene import Scene, scene_at
 from engine.simulation import Simulation
 
 
@@ -71,7 +71,7 @@ def measure(source: Path, steps: int, arch: str, threads: int) -> Measurement:
         JobError: the checkpoint is of another scene or physics version.
         RunFault: a particle left the range in which the equations hold.
     """
-    scene = scene_in(source) if source.is_dir() else read_scene(source)
+    scene = scene_at(source)
     backend.start(arch, threads)
     simulation = _begun(scene, source)
     simulation.advance(scene.end_time, steps=1)

@@ -62,9 +62,10 @@ class SelfGravity(ABC):
             What had to be taken out so that the pull has no net force and no net torque.
         """
         state = self.particles.read("x", "v", "mass")
-        x = state["x"] + ahead * state["v"]
-        pull = self._evaluate(x, state["mass"], self.ax, self.ay, self.az)
-        acceleration, taken_out = without_net_effect(pull, x, state["mass"])
+        x, v, mass = (state[name].astype(np.float64) for name in ("x", "v", "mass"))
+        x += ahead * v
+        pull = self._evaluate(x, mass, self.ax, self.ay, self.az)
+        acceleration, taken_out = without_net_effect(pull, x, mass)
         self.particles.write({"acceleration": acceleration})
         return taken_out
 

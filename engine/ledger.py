@@ -52,7 +52,7 @@ def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: floa
         elastic: elastic energy of every particle [J], shape [particle_count].
         gravitational_energy, half_step_work: [J].
     """
-    m, x, v, C = state["mass"], state["x"], state["v"], state["C"]
+    m, x, v, C, E = (state[name].astype(np.float64) for name in ("mass", "x", "v", "C", "E"))
     inertia = 0.25 * dx**2  # second moment of the quadratic spline, per mass
     skew = np.stack([C[:, 2, 1] - C[:, 1, 2], C[:, 0, 2] - C[:, 2, 0], C[:, 1, 0] - C[:, 0, 1]], axis=1)
     return Totals(
@@ -61,7 +61,7 @@ def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: floa
         angular_momentum=np.sum(m[:, None] * (np.cross(x, v) + inertia * skew), axis=0),
         kinetic_energy=0.5 * float(np.sum(m * np.sum(v**2, axis=1))),
         affine_kinetic_energy=0.5 * inertia * float(np.sum(m * np.sum(C**2, axis=(1, 2)))),
-        internal_energy=float(np.sum(m * state["E"])),
+        internal_energy=float(np.sum(m * E)),
         elastic_energy=float(np.sum(elastic)),
         gravitational_energy=gravitational_energy,
         half_step_work=half_step_work,
@@ -90,8 +90,8 @@ def elastic_energy(state: Arrays, rho0: Vector, bulk: Vector, shear: Vector) -> 
         state: fields j, tau and mass of every particle.
         rho0, bulk, shear: reference density [kg/m^3] and moduli [Pa] of every particle, shape [particle_count].
     """
-    pressure = -np.sum(state["tau"][:, :3], axis=1) / 3.0
-    s = state["tau"].copy()
+    s = state["tau"].astype(np.float64)
+    pressure = -np.sum(s[:, :3], axis=1) / 3.0
     s[:, :3] += pressure[:, None]
     square = np.sum(s[:, :3] ** 2, axis=1) + 2.0 * np.sum(s[:, 3:] ** 2, axis=1)
     density = pressure**2 / (2.0 * bulk) + square / (4.0 * shear)

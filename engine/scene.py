@@ -9,6 +9,7 @@ from engine.blocks import EDGE
 from engine.body import Body, Box
 from engine.errors import SceneError
 from engine.materials import Fracture, Material
+from engine.precision import Precision
 from engine.validation import Finite, Frozen, NonNegative, Positive, Vector, read_table, validate
 
 Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
@@ -107,10 +108,12 @@ class Numerics(Frozen):
 
     particles_per_cell: fixes the grid, dx = h * particles_per_cell^(1/3).
     cfl: time step in units of dx / (wave speed + particle speed).
+    precision: of all numbers on the device; see section 10 of engine/physics.md for what `f32` can and cannot do.
     """
 
     particles_per_cell: Positive = 4.0
     cfl: Fraction = 0.5
+    precision: Precision = "f64"
 
 
 class Output(Frozen):
@@ -201,3 +204,12 @@ def scene_in(directory: Path) -> Scene:
         if (directory / name).is_file():
             return read_scene(directory / name)
     raise SceneError(f"{directory}: holds no scene.json or scene.toml; write the scene to run there first")
+
+
+def scene_at(source: Path) -> Scene:
+    """The scene in a file, or of a job directory.
+
+    Raises:
+        SceneError: it cannot be read.
+    """
+    return scene_in(source) if source.is_dir() else read_scene(source)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine import assembly
+from engine.backend import require_precision
 from engine.blocks import EDGE, HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.body import Solid
 from engine.clock import FAULT_NONE, Clock
@@ -31,6 +32,7 @@ class Simulation:
     """
 
     def __init__(self, scene: Scene) -> None:
+        require_precision(scene.numerics.precision)
         self.scene, physics = scene, scene.physics
         self.particles = Particles(scene.particles)
         longest = physics.gravity.interval if physics.gravity else scene.end_time - scene.start_time

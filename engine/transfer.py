@@ -11,7 +11,7 @@ import numpy as np
 import taichi as ti
 import taichi.math as tm
 
-from engine.backend import TASK, Real, capacity, mat3, on_gpu, overwrite, vec3, vec4
+from engine.backend import EPSILON, TASK, Real, capacity, mat3, on_gpu, overwrite, vec3, vec4
 from engine.blocks import Blocks
 from engine.clock import FAULT_INVERTED, Clock
 from engine.spline import moments, own_share, spline_weights
@@ -25,7 +25,7 @@ TILE = 64
 LARGEST_INCREMENT = 0.3
 """Largest deformation |dt L| of one step [-]."""
 
-ALONE = 1e-14
+ALONE = 50.0 * EPSILON
 """Share of a particle's mass below which what others have on the same nodes is round-off.
 
 The smaller of both masses at a node bounds the momentum they can exchange there, so that none is lost with them.
@@ -34,7 +34,7 @@ The smaller of both masses at a node bounds the momentum they can exchange there
 MIXED = 1e-3
 """Mean mass of others on a particle's nodes, in units of its own, above which it is surely not alone."""
 
-ROUNDING = 1e-9
+ROUNDING = max(1e-9, 100.0 * EPSILON)
 """Relative difference of energies that are equal but for round-off."""
 
 

@@ -1,7 +1,9 @@
 """Small job directories and the engine's command line, for tests."""
 
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from engine.collision import Collision
+from engine.jobdir import JobDirectory
 from engine.storage import read_dataset
 
 
@@ -27,6 +30,18 @@ def engine_command(directory: Path, *options: str) -> list[str]:
 
 def run_engine(directory: Path, *options: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(engine_command(directory, *options), capture_output=True, text=True, timeout=300, check=False)
+
+
+def start_and_stop(directory: Path, number: signal.Signals) -> int:
+    """Run with constant checkpoints and send a signal once the second one is there."""
+    process = subprocess.Popen(engine_command(directory, "--checkpoint-interval", "0"), stderr=subprocess.PIPE)
+    job = JobDirectory(directory)
+    while not job.previous_checkpoint.exists():
+        assert process.poll() is None, "the run ended before it could be stopped"
+        time.sleep(0.005)
+    process.send_signal(number)
+    process.communicate(timeout=60)
+    return process.returncode
 
 
 def assert_same_results(one: Path, other: Path) -> None:

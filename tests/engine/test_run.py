@@ -11,7 +11,14 @@ import pytest
 
 from engine.jobdir import JobDirectory
 from engine.storage import read_dataset, write_dataset
-from tests.engine.jobs import assert_same, assert_same_results, engine_command, run_engine, write_job
+from tests.engine.jobs import (
+    assert_same,
+    assert_same_results,
+    engine_command,
+    run_engine,
+    start_and_stop,
+    write_job,
+)
 
 
 @pytest.fixture(scope="module")
@@ -21,18 +28,6 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
     result = run_engine(directory)
     assert result.returncode == 0, result.stderr
     return directory
-
-
-def start_and_stop(directory: Path, number: signal.Signals) -> int:
-    """Run with constant checkpoints and send a signal once the second one is there."""
-    process = subprocess.Popen(engine_command(directory, "--checkpoint-interval", "0"), stderr=subprocess.PIPE)
-    job = JobDirectory(directory)
-    while not job.previous_checkpoint.exists():
-        assert process.poll() is None, "the run ended before it could be stopped"
-        time.sleep(0.005)
-    process.send_signal(number)
-    process.communicate(timeout=60)
-    return process.returncode
 
 
 def test_a_run_writes_all_files_of_the_contract(reference: Path) -> None:

@@ -1,0 +1,28 @@
+"""Precision of all numbers on the device: one per process, chosen before the device modules are imported."""
+
+import os
+from typing import Literal, get_args
+
+from engine.errors import SceneError
+
+Precision = Literal["f64", "f32"]
+
+VARIABLE = "ENGINE_PRECISION"
+"""Environment variable that holds the choice, for this process and those it starts."""
+
+
+def choose(precision: Precision) -> None:
+    """Let device modules that are imported from now on use a precision."""
+    os.environ[VARIABLE] = precision
+
+
+def chosen() -> str:
+    """The precision to build with.
+
+    Raises:
+        SceneError: there is no such precision.
+    """
+    precision = os.environ.get(VARIABLE, "f64")
+    if precision not in get_args(Precision):
+        raise SceneError(f"{VARIABLE}: '{precision}' is no precision; allowed: {', '.join(get_args(Precision))}")
+    return precision

@@ -1,0 +1,74 @@
+"""Single precision: a process takes it up before it builds its device modules, so each run is one of its own."""
+
+import json
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from engine.backend import require_precision
+from engine.errors import SceneError
+from engine.precision import VARIABLE, chosen
+from engine.storage import read_dataset
+from tests.engine.jobs import assert_same_results, run_engine, start_and_stop, write_job
+
+SINGLE = {"numerics": {"precision": "f32"}}
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An uninterrupted run on one thread."""
+    directory = write_job(tmp_path_factory.mktemp("single") / "job", **SINGLE)
+    result = run_engine(directory)
+    assert result.returncode == 0, result.stderr
+    return directory
+
+
+def test_the_device_computes_in_the_precision_of_the_scene(reference: Path, tmp_path: Path) -> None:
+    sessions = json.loads((reference / "provenance.json").read_text(encoding="utf-8"))["sessions"]
+    assert sessions[0]["precision"] == "f32"
+    final = read_dataset(reference / "final.nc")
+    for name in ("position", "velocity", "J", "energy"):
+        values = final[name].values
+        assert values.dtype == np.float64 and np.isfinite(values).all()
+    velocity = final["velocity"].values
+    assert np.array_equal(velocity, velocity.astype(np.float32))
+    double = write_job(tmp_path / "job")
+    assert run_engine(double).returncode == 0
+    assert not np.array_equal(velocity, read_dataset(double / "final.nc")["velocity"].values)
+
+
+def test_two_threads_give_the_bits_of_one(tmp_path: Path, reference: Path) -> None:
+    directory = write_job(tmp_path / "job", **SINGLE)
+    assert run_engine(directory, "--threads", "2").returncode == 0
+    assert_same_results(directory, reference)
+
+
+def test_a_killed_run_resumes_to_the_same_bits(tmp_path: Path, reference: Path) -> None:
+    directory = write_job(tmp_path / "job", **SINGLE)
+    assert start_and_stop(directory, signal.SIGKILL) == -signal.SIGKILL
+    assert read_dataset(directory / "checkpoint.previous.nc")["v"].dtype == np.float32
+    assert run_engine(directory).returncode == 0
+    assert "resumed" in (directory / "log.txt").read_text()
+    assert_same_results(directory, reference)
+
+
+def test_momentum_is_kept_to_single_precision(reference: Path) -> None:
+    history = read_dataset(reference / "history.nc")
+    drift = np.linalg.norm(history["momentum"].values - history["momentum"].values[0], axis=1).max()
+    size = float(np.sqrt(2.0 * history["kinetic_energy"].values[0] * history["mass"].values[0]))
+    # round-off of 200 steps, far above that of double precision
+    assert 1e-12 * size < drift < 1e-5 * size
+
+
+def test_a_process_of_another_precision_refuses_the_scene() -> None:
+    require_precision("f64")
+    with pytest.raises(SceneError, match=r"'numerics\.precision': the scene asks for f32"):
+        require_precision("f32")
+
+
+def test_an_unknown_precision_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "f16")
+    with pytest.raises(SceneError, match=r"'f16' is no precision; allowed: f64, f32"):
+        chosen()
