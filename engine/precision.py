@@ -1,7 +1,7 @@
 """Precision of all numbers on the device: one per process, chosen before the device modules are imported."""
 
 import os
-from typing import Literal, get_args
+from typing import Literal, cast, get_args
 
 from engine.errors import SceneError
 
@@ -16,13 +16,13 @@ def choose(precision: Precision) -> None:
     os.environ[VARIABLE] = precision
 
 
-def chosen() -> str:
+def chosen() -> Precision:
     """The precision to build with.
 
     Raises:
         SceneError: there is no such precision.
     """
-    precision = os.environ.get(VARIABLE, "f64")
-    if precision not in get_args(Precision):
-        raise SceneError(f"{VARIABLE}: '{precision}' is no precision; allowed: {', '.join(get_args(Precision))}")
-    return precision
+    given = os.environ.get(VARIABLE, "f64")
+    if given in get_args(Precision):
+        return cast(Precision, given)
+    raise SceneError(f"{VARIABLE}: '{given}' is no precision; allowed: {', '.join(get_args(Precision))}")

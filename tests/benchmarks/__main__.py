@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from engine.precision import Precision
 from tests.benchmarks import startup
 from tests.benchmarks.child import ask
 from tests.benchmarks.host import commit, host
@@ -42,16 +43,14 @@ def main(out: Annotated[Path, typer.Option(help="File for all figures, as JSON."
 
 def measure() -> Results:
     """Every figure, each from a process of its own."""
-    sizes = [
-        _tell("steps", particles=particles, threads=threads, contact=contact, steps=steps)
-        for particles, (contact, steps) in SIZES.items()
-        for threads in THREADS
-    ]
+    sizes = [_steps(particles, threads) for particles in SIZES for threads in THREADS]
+    single = [_steps(particles, 1, "f32") for particles in SIZES]
     limits = [_tell("machine", threads=threads) for threads in THREADS]
     baseline = _tell("ratio", particles=REFERENCE, threads=max(THREADS), contact=SIZES[REFERENCE][0], rounds=ROUNDS)
     typer.echo("startup", err=True)
     return {
         "sizes": sizes,
+        "single_precision": single,
         "slopes": [{"threads": threads, **_slopes(sizes, threads)} for threads in THREADS],
         "baseline": baseline,
         "limits": limits,
@@ -60,9 +59,14 @@ def measure() -> Results:
     }
 
 
-def _tell(module: str, **arguments: float) -> Results:
-    typer.echo(f"{module} {arguments}", err=True)
-    return ask(module, **arguments)
+def _steps(particles: int, threads: int, precision: Precision = "f64") -> Results:
+    contact, steps = SIZES[particles]
+    return _tell("steps", precision, particles=particles, threads=threads, contact=contact, steps=steps)
+
+
+def _tell(module: str, precision: Precision = "f64", **arguments: float) -> Results:
+    typer.echo(f"{module} {precision} {arguments}", err=True)
+    return ask(module, precision, **arguments)
 
 
 def _slopes(sizes: list[Results], threads: int) -> dict[str, float]:

@@ -1,19 +1,23 @@
 """Measurements in processes of their own: a process holds one Taichi program, on one number of threads."""
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from engine.precision import VARIABLE, Precision
+
 ROOT = Path(__file__).parents[2]
 
 
-def ask(module: str, **arguments: float) -> dict[str, Any]:
-    """The answer of tests/benchmarks/`module`, run with these arguments."""
+def ask(module: str, precision: Precision = "f64", **arguments: float) -> dict[str, Any]:
+    """The answer of tests/benchmarks/`module`, run with these arguments in this precision."""
     command = [sys.executable, "-m", f"tests.benchmarks.{module}", json.dumps(arguments)]
-    done = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True)
+    environment = {**os.environ, VARIABLE: precision}
+    done = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True, env=environment)
     return dict(json.loads(done.stdout.splitlines()[-1]))
 
 

@@ -1,20 +1,20 @@
 """Arithmetic of one step of one particle."""
 
 OPERATIONS = {
-    # 27 nodes: weight 2, offset 6, affine momentum 18, times weight 4, added to the node 4
-    "particles_to_grid": 27 * 34 + 80,
+    # 9 rows: weight 1, momentum and mass 16, times weight 8; 27 nodes: momentum and mass 8, times weight 4, added 4
+    "particles_to_grid": 9 * 25 + 27 * 16 + 80,
     # three quotients and up to eight copies of four numbers on 0.75 nodes per particle
     "update_grid": 20,
-    # 27 nodes: weight 2, weighted node 4, sum 4, outer product with the offset 21, mass shared with others 4
-    "grid_to_particles": 27 * 35 + 60,
+    # 9 rows: two sums over three nodes 40, added to three sums 24; 3 planes: added to four sums 32
+    "grid_to_particles": 9 * 64 + 3 * 32 + 80,
     # (I + dt L)^-1, products and symmetric parts, det(I + dt L) - 1 and two norms
     "affine_velocity": 215,
-    # det(I + A) - 1 and four products of 3x3 matrices
-    "deform": 220,
-    # an inverse, two products, 14 terms of the series
-    "half_log": 330,
-    # a product and 12 terms, as if every particle yielded
-    "exp_minus_identity": 200,
+    # det(I + A) - 1 and two products of 3x3 matrices
+    "deform": 150,
+    # an inverse, two products, 8 terms of the series
+    "half_log": 200,
+    # a product and 8 terms, as if every particle yielded
+    "exp_minus_identity": 140,
     "tillotson": 45,
     "strength, stress, energy": 150,
 }

@@ -9,6 +9,7 @@ PHASE_TITLES = {"particles_to_grid": "P2G", "update_grid": "grid", "grid_to_part
 TITLES = (
     "particles",
     "threads",
+    "reals",
     *PHASE_TITLES.values(),
     "step",
     "least",
@@ -27,13 +28,13 @@ Results = dict[str, Any]
 def print_report(results: Results) -> None:
     """Print the table of sizes, and below it the figures that belong to one size or none."""
     console = Console(width=150)
-    host, precision = results["host"], results["sizes"][0]["precision"]
+    host = results["host"]
     console.print(
-        f"{results['date']}, {host['cores']} cores, {host['cpu']}, Taichi {host['taichi']}, {precision}, "
+        f"{results['date']}, {host['cores']} cores, {host['cpu']}, Taichi {host['taichi']}, "
         f"commit {results['commit']}; ms per step: medians, least, CPU time of all threads, cores it got"
     )
     table = Table(*TITLES)
-    for row in results["sizes"]:
+    for row in [*results["sizes"], *results["single_precision"]]:
         table.add_row(*_cells(row, _reference(results["sizes"], row["threads"])))
     console.print(table)
     for line in _lines(results):
@@ -45,6 +46,7 @@ def _cells(row: Results, reference: Results) -> list[str]:
     return [
         f"{row['particles']:,}",
         str(row["threads"]),
+        row["precision"],
         *(f"{row['phases'][name]['median_ms']:.2f}" for name in PHASE_TITLES),
         f"{step['median_ms']:.2f}",
         f"{step['least_ms']:.2f}",

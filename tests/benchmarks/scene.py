@@ -1,11 +1,18 @@
 """The scene that is timed: a collision of two bodies, from shortly before contact."""
 
 from engine.collision import Collision
-from engine.scene import Gravity, Scene
+from engine.precision import chosen
+from engine.scene import Gravity, Numerics, Scene
 
 
 def collision(particles: int, gravity: Gravity | None = None) -> Scene:
     """A (200 m/s, 15 deg) collision of two bodies of `particles` each, with all physics but, unless asked, gravity."""
     return Collision(
-        velocity=200.0, angle=15.0, particles=particles, gravity=gravity, start_separation=1.05, end_time=1e5
+        velocity=200.0,
+        angle=15.0,
+        particles=particles,
+        gravity=gravity,
+        start_separation=1.05,
+        end_time=1e5,
+        numerics=Numerics(precision=chosen()),
     ).scene()
