@@ -69,6 +69,29 @@ def test_the_error_falls_with_the_first_power_of_the_opening_that_is_left_out(so
     assert order - 0.3 < fitted < order + 1.2
 
 
+@pytest.mark.parametrize(("solver", "order"), [(Monopoles, 2.0), (Tree, 3.0)])
+def test_a_cloud_that_acts_as_one_node_is_wrong_by_the_first_moment_left_out(solver, order) -> None:
+    generator = np.random.default_rng(6)
+    cloud, probes = generator.exponential(size=(512, 3)) * [1.0, 1.0, 3.0], generator.uniform(-1.0, 1.0, (512, 3))
+    mass = np.concatenate([np.ones(512), np.zeros(512)]) / G
+    distances = np.array([300.0, 600.0, 1200.0])
+    errors = []
+    for distance in distances:
+        x = np.concatenate([cloud, probes + np.array([0.0, 0.0, distance])])
+        particles = with_particles(x, mass)
+        exact, tree = (pull_and_potential(g) for g in (DirectSum(particles, RADIUS), solver(particles, RADIUS, 1.0)))
+        errors.append(
+            [np.linalg.norm(t[512:] - e[512:]) / np.linalg.norm(e[512:]) for t, e in zip(tree, exact, strict=True)]
+        )
+    slopes = np.polyfit(np.log(distances), np.log(errors), 1)[0]
+    assert -slopes == pytest.approx(order, abs=0.1)
+
+
+def pull_and_potential(gravity: SelfGravity) -> tuple[Array, Array]:
+    state = gravity.particles.read("x", "mass")
+    return gravity.pull(0.0), gravity._evaluate(state["x"], state["mass"], gravity.potential)
+
+
 def test_the_quadrupole_earns_its_place() -> None:
     particles = with_particles(uniform(4000))
     exact = DirectSum(particles, RADIUS).pull(0.0)
