@@ -81,6 +81,13 @@ class Constitution:
         return self.wave_speed(c2, body), diffusivity
 
     @ti.func
+    def signal_speed(self, p):
+        """Speed of the fastest wave [m/s] in particle p as it is."""
+        body, J = self.particles.body[p], 1.0 + self.particles.j[p]
+        _, c2 = self.pressure.pressure(-self.particles.j[p] / J, self.energy.after(p, 0.0), body)
+        return self.wave_speed(c2, body)
+
+    @ti.func
     def wave_speed(self, c2, body):
         """Speed of the fastest wave [m/s]."""
         return ti.sqrt(c2 + 4.0 / 3.0 * self.shear.modulus(body) / self.table[body].rho0)

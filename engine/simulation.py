@@ -18,7 +18,7 @@ from engine.ledger import Totals, elastic_energy, half_step_work, totals
 from engine.materials import Material
 from engine.particles import Arrays, Particles
 from engine.scene import Scene
-from engine.transfer import Transfer
+from engine.transfer import LARGEST_INCREMENT, Transfer
 
 LAUNCHES = 64
 """Most steps launched before the host looks whether they ran."""
@@ -63,7 +63,7 @@ class Simulation:
         """Put all particles where the scene has them; `changes` replace whole fields of their state."""
         self.particles.write({**initial_state(self.scene), **changes})
         self.rebuild_blocks()
-        self.clock.rate[None] = self._first_rate()
+        self.clock.rate[None] = max(self._first_rate(), self._rate_of_state())
 
     def advance(self, until: float, steps: int = LAUNCHES) -> None:
         """Take at most some `steps`, none of them after the first that reaches `until` [s].
@@ -157,6 +157,14 @@ class Simulation:
         scene = self.scene
         speeds = [_fastest(body, material) for body, material in zip(scene.bodies, scene.materials, strict=True)]
         return max(speeds) / (scene.numerics.cfl * scene.dx)
+
+    def _rate_of_state(self) -> float:
+        """Inverse time step [1/s] that present motion and stress inside particles demand (engine/transfer.py)."""
+        state = self.particles.read("C", "tau", "body")
+        stress = np.sqrt(np.sum(state["tau"] ** 2 * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0], axis=1))
+        release = 4.0 * float((stress / self.rho0(state)).max()) / self.scene.dx**2
+        strain = float(np.linalg.norm(state["C"], axis=(1, 2)).max())
+        return max(strain / LARGEST_INCREMENT, math.sqrt(release / LARGEST_INCREMENT))
 
     def totals(self) -> Totals:
         """What the run must conserve, now."""

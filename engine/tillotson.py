@@ -27,15 +27,15 @@ class Tillotson:
                 getattr(self.table, name)[i] = value
 
     @ti.func
-    def pressure(self, mu, E, body):
+    def pressure(self, mu, energy, body):
         """Pressure [Pa] and squared sound speed [m^2/s^2].
 
         Args:
             mu: rho/rho0 - 1 [-].
-            E: specific internal energy [J/kg].
+            energy: specific internal energy [J/kg]; below zero there is no heat left that could press.
             body: index of the body, which fixes the material.
         """
-        m = self.table[body]
+        m, E = self.table[body], ti.max(energy, 0.0)
         cold_P, cold_eta, cold_e = condensed(m, mu, E)
         P, P_eta, P_e = cold_P, cold_eta, cold_e
         if mu < 0.0 and m.E_iv < E:

@@ -276,20 +276,27 @@ class Transfer:
         c, diffusivity = self.constitution.update(p, L, dt)
         if not self.particles.j[p] > -1.0 or tm.isinf(self.particles.j[p]):
             self.clock.report_fault(FAULT_INVERTED, self.particles.index[p])
-        return vec4(c + v.norm(), norm_squared(L), self.gravity.at(p).norm_sqr(), diffusivity)
+        deformation = ti.max(norm_squared(L), LARGEST_INCREMENT * self.release(p))
+        return vec4(c + v.norm(), deformation, self.gravity.at(p).norm_sqr(), diffusivity)
 
     @ti.func
     def drift(self, p):
         """A particle that shares no node with another is ballistic: its strain rests, its spin stays.
 
-        Its speed limits the time step, lest it passes another unseen.
+        Its speed limits the time step, lest it passes another unseen; so does its state, lest they meet in a long one.
         """
         dt = self.clock.dt[None]
         v = self.particles.v[p] + dt * self.gravity.at(p)
         self.particles.x[p] = self.particles.x[p] + dt * v
         self.particles.v[p] = v
         self.particles.C[p] = 0.5 * (self.particles.C[p] - self.particles.C[p].transpose())
-        return vec4(v.norm(), 0.0, 0.0, 0.0)
+        return vec4(self.constitution.signal_speed(p) + v.norm(), LARGEST_INCREMENT * self.release(p), 0.0, 0.0)
+
+    @ti.func
+    def release(self, p):
+        """Growth [1/s^2] of the velocity gradient of particle p under its own stress, where nothing else holds it."""
+        dx, rho0 = self.dx[None], self.constitution.table[self.particles.body[p]].rho0
+        return 4.0 * ti.sqrt(norm_squared(unpack(self.particles.tau[p]))) / (rho0 * dx * dx)
 
     @ti.func
     def check_place(self, p):

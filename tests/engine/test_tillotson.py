@@ -124,3 +124,14 @@ def test_the_strengthless_hugoniot():
     assert worst(shocked, compression, 1.0) < 0.51e-5
     assert worst(us, shock_speed, shock_speed) < 1.6e-5
     assert worst(RHO0 * us * up, pressure, pressure) < 5e-4
+
+
+def test_matter_without_heat_follows_the_cold_curve():
+    """Also where the fit has its pole, E = -E0 eta^2."""
+    J = np.array([0.5, 0.9, 1.1, 5.0, 50.0])
+    mu = 1.0 / J - 1.0
+    cold, _ = engine_pressure(mu, np.zeros(5))
+    for E in (-1.0 * np.ones(5), -E0 / J**2, -1e8 * np.ones(5)):
+        P, c2 = engine_pressure(mu, E)
+        np.testing.assert_array_equal(P, cold)
+        assert (c2 >= FLOOR).all() and np.isfinite(c2).all()

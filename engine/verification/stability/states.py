@@ -12,7 +12,7 @@ from engine.verification.stability.case import Changes
 
 
 def strained(eta: float, damage: float = 0.0) -> Changes:
-    """Condensed rock at rho/rho0 = eta and at rest, with the stress and energy of it, below evaporation."""
+    """Condensed rock at rho/rho0 = eta and at rest, with its stress and the energy of it, below evaporation."""
 
     def changes(scene: Scene) -> Arrays:
         material = scene.materials[0]
