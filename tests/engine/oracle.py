@@ -26,7 +26,8 @@ def hot(mu: Array, E: Array) -> Array:
 
 
 def tillotson(mu: Array, E: Array) -> Array:
-    """Pressure [Pa] from compression and energy; complex arguments give its derivatives."""
+    """Pressure [Pa] from compression and energy, none of it below zero; complex arguments give its derivatives."""
+    E = np.where(E.real < 0.0, 0.0, E)
     between = ((E - E_IV) * hot(mu, E) + (E_CV - E) * cold(mu, E)) / (E_CV - E_IV)
     condensed = (mu.real >= 0.0) | (E.real < E_IV)
     return np.asarray(np.select([condensed, E.real > E_CV], [cold(mu, E), hot(mu, E)], between))
