@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
+import dask
 from dask.distributed import Client, LocalCluster
 from dask.system import CPU_COUNT
 
@@ -62,14 +63,15 @@ def connect(resources: Resources) -> Iterator[Client]:
 
 def _local(resources: Resources) -> Any:
     """Worker threads of this process: all they do is wait for the engine's processes."""
-    return LocalCluster(
-        n_workers=1,
-        threads_per_worker=resources.workers,
-        processes=False,
-        memory_limit=0,
-        dashboard_address=None,
-        silence_logs=logging.ERROR,
-    )
+    with dask.config.set({"distributed.scheduler.worker-ttl": None}):  # or they were lost when the machine slept
+        return LocalCluster(
+            n_workers=1,
+            threads_per_worker=resources.workers,
+            processes=False,
+            memory_limit=0,
+            dashboard_address=None,
+            silence_logs=logging.ERROR,
+        )
 
 
 def _client_of(address: str) -> Client:

@@ -1,9 +1,9 @@
-"""Sharing the cores among jobs."""
+"""Sharing the cores among jobs, and the cluster on this machine."""
 
 import pytest
 
 from campaigns import cluster
-from campaigns.cluster import share_cores
+from campaigns.cluster import Resources, connect, share_cores
 
 
 @pytest.mark.parametrize(
@@ -24,3 +24,13 @@ from campaigns.cluster import share_cores
 def test_share_cores(unfinished, workers, threads, expected, monkeypatch):
     monkeypatch.setattr(cluster, "CPU_COUNT", 8)
     assert share_cores(unfinished, workers, threads) == expected
+
+
+def test_a_machine_that_slept_keeps_its_workers():
+    with connect(Resources(workers=1, threads=1)) as client:
+        scheduler = client.cluster.scheduler
+        for worker in scheduler.workers.values():
+            worker.last_seen -= 1e6
+        if scheduler.worker_ttl:
+            client.sync(scheduler.check_worker_ttl)
+        assert client.submit(int, 1).result(timeout=10) == 1
