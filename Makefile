@@ -43,7 +43,7 @@ plan: $(INSTALLED) ## show what a run of STUDY would do with every job, and why
 status: $(INSTALLED) ## show how every job of STUDY stands
 	@$(RUN) campaigns status '$(STUDY)' --runs '$(RUNS)'
 
-plots: $(INSTALLED) ## draw the figures and the report of STUDY
+plots: $(INSTALLED) ## print the table of shapes of STUDY and draw its figures
 	@directory=$$($(RUN) campaigns where '$(STUDY)' --runs '$(RUNS)') && $(RUN) analysis plots "$$directory"
 
 accuracy: $(INSTALLED) ## turn every numerical setting of scenes and of a collision: error against computing time
