@@ -33,8 +33,8 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "with viscosity": {"viscosity": Viscosity(shear=1e5, shock_linear=1.0, shock_quadratic=2.0)},
     "with a wall": {"walls": (Wall(point=(0.0, 0.0, -1e7), friction=0.5),)},
 }
-STATES = {"intact": -20.0, "rubble": 100.0}
-"""Time [s] after contact: on the approach, when nothing is broken, and when nearly everything is."""
+STATES = {"intact": -150.0, "rubble": 100.0}
+"""Time [s] after contact: on the approach, before the first common node breaks anything, and when nearly all is broken."""
 BATCH = 5
 """Steps of one turn."""
 
