@@ -34,7 +34,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "with a wall": {"walls": (Wall(point=(0.0, 0.0, -1e7), friction=0.5),)},
 }
 STATES = {"intact": -150.0, "rubble": 100.0}
-"""Time [s] after contact: on the approach, before the first common node breaks anything, and when nearly all is broken."""
+"""Time [s] after contact: before the first common node breaks anything, and when nearly all is broken."""
 BATCH = 5
 """Steps of one turn."""
 
