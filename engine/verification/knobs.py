@@ -23,6 +23,8 @@ FINE_STEPS = 16000
 """Time steps of the independent integration that bars are compared with."""
 
 CFL = {"numerics.cfl": (0.1, 0.25, 0.5, 0.9)}
+PRECISION = {"numerics.precision": ("f64", "f32")}
+COMMON = CFL | PRECISION
 CELLS = {"numerics.particles_per_cell": (2.0, 4.0, 8.0)}
 GRAVITY = {"physics.gravity.interval": (5.0, 10.0, 20.0, 40.0, 80.0), "physics.gravity.opening": (0.2, 0.5, 0.8)}
 SOUND = {"physics.sound_speed": (1.0, 0.5, 0.25)}
@@ -85,51 +87,51 @@ def _checked(problem: Any, quantity: str) -> float:
 
 
 TRADEOFFS = {
-    "column": Tradeoff("speed of a wave, relative", _wave, "cells", (16, 8, 32, 64), CFL),
-    "hugoniot": Tradeoff("pressure behind a shock of 500 m/s, relative", _shock, "cells", (80, 40, 160), CFL),
+    "column": Tradeoff("speed of a wave, relative", _wave, "cells", (16, 8, 32, 64), COMMON),
+    "hugoniot": Tradeoff("pressure behind a shock of 500 m/s, relative", _shock, "cells", (80, 40, 160), COMMON),
     "rotation": Tradeoff(
         "total energy after a turn, relative",
         lambda particles: _checked(Rotation(particles), "total energy"),
         "particles",
         (1000, 300, 3000),
-        CFL | CELLS,
+        COMMON | CELLS,
     ),
     "expansion": Tradeoff(
         "position after expanding, over R",
         lambda particles: _checked(Expansion(particles), "out: distance from r (1 + H t), over R"),
         "particles",
         (1000, 300),
-        CFL,
+        COMMON,
     ),
     "hydrostatic": Tradeoff(
         "RMS of P - P(r), over P(0)",
         lambda particles: _checked(Hydrostatic(particles), "RMS of P - P(r), as a share of P(0)"),
         "particles",
         (2000, 500, 8000),
-        CFL | CELLS | GRAVITY | SOUND,
+        COMMON | CELLS | GRAVITY | SOUND,
     ),
-    "collapse": Tradeoff("collapse time, relative", _fall, "particles", (1000, 300, 4000), CFL | CELLS | GRAVITY),
+    "collapse": Tradeoff("collapse time, relative", _fall, "particles", (1000, 300, 4000), COMMON | CELLS | GRAVITY),
     "orbit": Tradeoff(
         "speed at contact [m/s]",
         lambda particles: _checked(Infall(particles), "speed at contact"),
         "particles",
         (500, 2000),
-        CFL | GRAVITY | SOUND,
+        COMMON | GRAVITY | SOUND,
     ),
     "rubble": Tradeoff(
         "angular momentum, relative",
         lambda particles: _checked(Rubble(particles), "angular momentum"),
         "particles",
         (300, 1000),
-        CFL | CELLS,
+        COMMON | CELLS,
     ),
     "bar": Tradeoff("peak stress at 10 /s, relative", _bar, "steps", (1000, 500, 2000, 4000), {}),
-    "slope": Tradeoff("acceleration at 35 deg, relative", _layer, "cells", (16, 8, 32, 64), CFL),
+    "slope": Tradeoff("acceleration at 35 deg, relative", _layer, "cells", (16, 8, 32, 64), COMMON),
     "cliff": Tradeoff(
         "height at rest from Jutzi's SPH, RMS [L0]",
         lambda cells: _checked(Cliff(cells), "final: RMS of H from Jutzi's SPH"),
         "cells",
         (5, 10),
-        CFL,
+        COMMON,
     ),
 }

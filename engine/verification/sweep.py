@@ -5,13 +5,14 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from engine import PHYSICS_VERSION, backend
+from engine.precision import Precision, choose
 from engine.storage import write_dataset
 from engine.verification.drive import fitted_order, settings
 from engine.verification.knobs import TRADEOFFS
@@ -58,12 +59,21 @@ def sweep(scenes: Iterable[str], path: Path, workers: int) -> Iterator[Run]:
     done = read(path)
     known = set() if done.empty else set(done[KEYS].itertuples(index=False, name=None))
     wanted = [(scene, knob, value) for scene in scenes for knob, value in TRADEOFFS[scene].runs]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
-        jobs = [pool.submit(measure, *run) for run in wanted if (*run[:2], str(run[2])) not in known]
-        for job in as_completed(jobs):
-            done = pd.concat([done, pd.DataFrame([asdict(job.result())])], ignore_index=True)
-            write(path, done)
-            yield job.result()
+    missing = [run for run in wanted if (*run[:2], str(run[2])) not in known]
+    for run in _measure_all(missing, workers):
+        done = pd.concat([done, pd.DataFrame([asdict(run)])], ignore_index=True)
+        write(path, done)
+        yield run
+
+
+def _measure_all(runs: list[tuple[str, str, Any]], workers: int) -> Iterator[Run]:
+    """Runs as they end; a process takes up its precision before it imports the engine."""
+    for precision in get_args(Precision):
+        chosen = [run for run in runs if (run[2] == "f32") == (precision == "f32")]
+        context, arguments = get_context("spawn"), (precision,)
+        with ProcessPoolExecutor(workers, context, choose, arguments, max_tasks_per_child=1) as pool:
+            for job in as_completed([pool.submit(measure, *run) for run in chosen]):
+                yield job.result()
 
 
 def read(path: Path) -> pd.DataFrame:

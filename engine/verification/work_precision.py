@@ -42,7 +42,7 @@ def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:
         axis.set_minor_formatter(NullFormatter())
     axes.tick_params(labelsize=7)
     for knob, group in runs.groupby("knob", sort=True):
-        ordered = group.assign(number=group["value"].astype(float)).sort_values("number")
+        ordered = group.assign(number=pd.to_numeric(group["value"], errors="coerce")).sort_values("number")
         label = str(knob) if "." in str(knob) else "particles, cells or steps"
         axes.plot(ordered["cpu_time"], ordered["error"], ".-", color=_color(str(knob)), label=label)
     front = pareto(runs)
