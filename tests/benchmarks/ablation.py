@@ -33,8 +33,8 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "with viscosity": {"viscosity": Viscosity(shear=1e5, shock_linear=1.0, shock_quadratic=2.0)},
     "with a wall": {"walls": (Wall(point=(0.0, 0.0, -1e7), friction=0.5),)},
 }
-STATES = {"intact": -150.0, "rubble": 100.0}
-"""Time [s] after contact: before the first common node breaks anything, and when nearly all is broken."""
+STATES = {"intact": (1.5, -200.0), "rubble": (1.05, 100.0)}
+"""Separation at the start [R1 + R2] and time [s] after contact: while nothing is broken, and when nearly all is."""
 BATCH = 5
 """Steps of one turn."""
 
@@ -54,7 +54,10 @@ def main(
         "host": host(),
         "load": os.getloadavg()[0],
         "particles": 2 * particles,
-        "states": {name: measure(collision(particles, Gravity()), time, rounds) for name, time in STATES.items()},
+        "states": {
+            name: measure(collision(particles, Gravity(), start), time, rounds)
+            for name, (start, time) in STATES.items()
+        },
     }
     print_table(results)
     out.parent.mkdir(parents=True, exist_ok=True)

@@ -5,14 +5,14 @@ from engine.precision import chosen
 from engine.scene import Gravity, Numerics, Scene
 
 
-def collision(particles: int, gravity: Gravity | None = None) -> Scene:
+def collision(particles: int, gravity: Gravity | None = None, start_separation: float = 1.05) -> Scene:
     """A (200 m/s, 15 deg) collision of two bodies of `particles` each, with all physics but, unless asked, gravity."""
     return Collision(
         velocity=200.0,
         angle=15.0,
         particles=particles,
         gravity=gravity,
-        start_separation=1.05,
+        start_separation=start_separation,
         end_time=1e5,
         numerics=Numerics(precision=chosen()),
     ).scene()
