@@ -1,1 +1,1 @@
-"""How fast, how right and how conservative gravity is, beside other codes; figures in tests/benchmarks/gravity.md."""
+"""How fast, how right and how conservative gravity is, beside other codes; figures in README.md beside this."""
