@@ -33,9 +33,13 @@ def curve_table(state: str, lines: list[Results]) -> Table:
 
 
 def time_at(rows: list[Results], error: float) -> float:
-    """CPU time [ms] at which the 99th percentile of the error is `error`, between measured points."""
+    """CPU time [ms] at which the 99th percentile of the error is `error`, between measured points.
+
+    Where a greater opening happens to err less, it counts with the error of the smaller one.
+    """
     times, errors = (np.log([row[name] for row in rows]) for name in ("cpu_ms", "percentile_99"))
-    return float(np.exp(np.interp(np.log(error), errors, times, left=np.nan, right=np.nan)))
+    rising = np.maximum.accumulate(errors)
+    return float(np.exp(np.interp(np.log(error), rising, times, left=np.nan, right=np.nan)))
 
 
 def run_table(run: Results) -> Table:
