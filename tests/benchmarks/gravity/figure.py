@@ -29,9 +29,15 @@ def draw(curves: dict[str, list[Results]], path: Path) -> None:
         panel.axhline(TARGET, color="0.5", linewidth=0.8, linestyle=":")
         panel.set(title=state, xscale="log", yscale="log", xlabel="CPU time of one evaluation, 1 thread [ms]")
         panel.grid(which="both", color="0.92", linewidth=0.6)
+        panel.set_xticks([30, 100, 300, 1000, 3000])
+        panel.set_yticks([0.01, 0.1, 1, 10])
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter("")
     panels[0].set_ylabel("99th percentile of |da|/|a| [%]")
     panels[0].text(0.02, TARGET, f"{TARGET} %", color="0.4", va="bottom", transform=panels[0].get_yaxis_transform())
-    default = Line2D([], [], color="k", marker="o", markersize=10, fillstyle="none", linestyle="none", label="default")
+    ring = {"color": "k", "marker": "o", "markersize": 10, "fillstyle": "none", "linestyle": "none"}
+    default = Line2D([], [], label="defaults of a code", **ring)
     handles = [*panels[0].get_legend_handles_labels()[0], default]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
     figure.savefig(path, dpi=110)
