@@ -110,8 +110,8 @@ def verify(
         for result in run_all(chosen, arch.value, threads):
             results.append(result)
             spinner.update(f"{len(results)} of {len(chosen)} done, {result.name} last")
-        if csv:
-            frame(results).to_csv(csv, index=False)
+            if csv:
+                frame(results).to_csv(csv, index=False)
         if figures:
             draw(chosen, figures)
     Console(width=max(Console().width, TABLE_WIDTH)).print(table(results))
