@@ -120,7 +120,7 @@ def verify(
 
 @application.command()
 def accuracy(
-    directory: Annotated[Path, typer.Argument(help="Where scenes.nc, scenes.png and scenes.md are written.")],
+    directory: Annotated[Path, typer.Argument(help="Where scenes.nc and scenes.png are written.")],
     names: Annotated[list[str] | None, typer.Argument(help="Verification scenes; all if none is named.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Runs at the same time, one thread each.")] = os.cpu_count() or 1,
 ) -> None:
