@@ -52,7 +52,7 @@ accuracy: $(INSTALLED) ## turn every numerical setting of scenes and of a collis
 		[ $$code -gt 1 ] || $(RUN) analysis accuracy '$(RUNS)/accuracy'; exit $$code
 
 stability: $(INSTALLED) ## run stiff and extreme cases; each is stable, or stopped with a reason
-	@$(RUN) engine stability '$(RUNS)/stability'
+	@$(RUN) engine stability '$(RUNS)/stability' $(if $(WORKERS),--workers $(WORKERS))
 
 test: $(INSTALLED) ## run the fast tests
 	$(RUN) pytest

@@ -141,32 +141,26 @@ def accuracy(
 
 @application.command()
 def stability(
-    directory: Annotated[Path, typer.Argument(help="Where stability.nc, stability.csv and the jobs are written.")],
+    directory: Annotated[Path, typer.Argument(help="Where stability.nc, .csv, .png and the jobs are written.")],
+    workers: Annotated[int, typer.Option(min=1, help="Cases at the same time, one thread each.")] = os.cpu_count() or 1,
 ) -> None:
     """Run stiff and extreme cases: each must be stable, or be stopped by a guard that names itself.
 
-    Exit code 0: none failed and no physical one was stopped; 1: one did.
+    Exit code 0: none failed and no physical one was stopped; 1: one did; 2: bad input.
     """
-    from engine import backend
-    from engine.storage import write_dataset
-    from engine.verification.stability.cases import all_cases
-    from engine.verification.stability.outcome import dataset, run_case
-    from engine.verification.stability.von_neumann import BLOCKS
-
     if directory.exists():
         _exit(f"{directory}: exists already; name a new directory", BAD_INPUT)
+    from engine.verification.stability.matrix import find_limits, run_all
+    from engine.verification.stability.results import dataset, summary, write
+
     outcomes = []
-    for number, case in enumerate(all_cases()):
-        outcomes.append(run_case(case, directory / "jobs" / f"{number:03d}"))
-        last = outcomes[-1]
-        typer.echo(f"{last.group:18} {last.name:28} {last.verdict:8} {last.steps:7d} steps  {last.reason}")
-    for block in BLOCKS:
-        backend.start(threads=1)
-        limits = f"{block.measured():.3f}, theory {block.theory():.3f}"
-        typer.echo(f"largest stable c dt/dx, {block.name} particles of a cell along its edges: {limits}")
-    table = dataset(outcomes)
-    write_dataset(directory / "stability.nc", table)
-    table.to_dataframe().to_csv(directory / "stability.csv", index=False)
+    for outcome in run_all(directory / "jobs", workers):
+        outcomes.append(outcome)
+        typer.echo(str(outcome))
+    results = dataset(outcomes, list(find_limits()))
+    write(directory, results)
+    typer.echo(summary(results).to_string(float_format="%.2g"))
+    typer.echo(results[["limit", "limit_theory"]].to_dataframe().to_string(float_format="%.3f"))
     raise typer.Exit(DONE if all(outcome.acceptable for outcome in outcomes) else FAILED)
 
 

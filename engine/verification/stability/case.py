@@ -35,7 +35,7 @@ class Case:
         name: how extreme.
         scene: what runs; a valid one unless a validated limit is what the case exceeds.
         changes: fields of the initial state that replace the scene's own.
-        physical: matter and motion that can be, with settings that the engine recommends: must not be stopped.
+        physical: matter and motion that can be, at settings that a scene accepts: must not be stopped.
     """
 
     group: str
@@ -78,6 +78,11 @@ def with_rows(scene: Scene) -> Scene:
 def with_courant_number(scene: Scene, cfl: float) -> Scene:
     """The scene at a time step that validation might refuse."""
     return scene.model_copy(update={"numerics": Numerics().model_copy(update={"cfl": cfl})})
+
+
+def in_single_precision(scene: Scene) -> Scene:
+    """The scene in f32."""
+    return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"precision": "f32"})})
 
 
 def stiffened(factor: float) -> Material:

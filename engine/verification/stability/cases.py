@@ -1,5 +1,7 @@
 """The matrix of stiff and extreme cases."""
 
+from dataclasses import replace
+
 from engine.body import Body
 from engine.scene import Gravity, Physics, Scene, Viscosity
 from engine.verification.rock import elastic
@@ -8,6 +10,7 @@ from engine.verification.stability.case import (
     Case,
     alone,
     impact,
+    in_single_precision,
     stiffened,
     uniform,
     with_courant_number,
@@ -36,10 +39,10 @@ def pair(velocity: tuple[float, float, float]) -> Scene:
 
 
 def _time_steps() -> list[Case]:
-    """Up to the recommended Courant number all must run; 10 is twenty times as much, and 5 ten times."""
+    """Whatever Courant number a scene accepts must run; 5 is ten times the default."""
     numbers = (0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 5.0)
     return [
-        Case("Courant number", f"{cfl:g}", with_courant_number(impact(), cfl), physical=cfl <= 0.5) for cfl in numbers
+        Case("Courant number", f"{cfl:g}", with_courant_number(impact(), cfl), physical=cfl <= 1.0) for cfl in numbers
     ] + [Case("Courant number", "5, at rest", with_courant_number(alone(hydrostatic=True), 5.0), physical=False)]
 
 
@@ -54,16 +57,16 @@ def _materials() -> list[Case]:
         Case("contrast", f"{a:g} on {b:g}", with_materials(impact(share=0.5), stiffened(b), stiffened(a)))
         for a, b in pairs
     ]
-    frictions = [Case("friction", f"{mu:g}", broken(impact(friction=mu))) for mu in (0.0, 0.839, 2.0, 100.0)]
+    frictions = [Case("friction", f"{mu:g}", broken(impact(friction=mu))) for mu in (0.0, 2.0, 100.0)]
     return moduli + contrasts + frictions
 
 
 def _impacts() -> list[Case]:
     speeds = (1.0, 10.0, 50.0, 1e3, 5e3, 1e4, 2e4)
     by_speed = [Case("speed", f"{v:g} m/s", impact(velocity=v)) for v in speeds]
-    head_on = [Case("speed", f"{v:g} m/s, head-on", impact(velocity=v, angle=0.0)) for v in (200.0, 5e3, 2e4)]
+    head_on = [Case("head-on", f"{v:g} m/s", impact(velocity=v, angle=0.0)) for v in (5e3, 2e4)]
     fine = {"velocity": 2e4, "particles": 300}
-    head_on += [Case("speed", f"20000 m/s, 2 x 300, seed {seed}", impact(**fine, seed=seed)) for seed in (2, 3)]
+    finer = [Case("speed", f"20000 m/s, 2 x 300, seed {seed}", impact(**fine, seed=seed)) for seed in (2, 3)]
     angles = [Case("angle", f"{angle:g} deg", impact(angle=angle)) for angle in (0.0, 45.0, 80.0, 89.9)]
     small = {"particles": 1000, "projectile_radius": 5e3}
     ratios = [Case("mass ratio", f"1:1000 at {v:g} m/s", impact(velocity=v, share=0.1, **small)) for v in (200.0, 5e3)]
@@ -74,7 +77,7 @@ def _impacts() -> list[Case]:
         Case("radius", "500 km", impact(radius=500e3, velocity=1000.0)),
         Case("radius", "1000 km", impact(radius=1000e3, velocity=2000.0)),
     ]
-    return by_speed + head_on + angles + ratios + sizes
+    return by_speed + finer + head_on + angles + ratios + sizes
 
 
 def _states() -> list[Case]:
@@ -101,7 +104,7 @@ def _states() -> list[Case]:
         )
     ]
     pulled += [
-        Case("stretched", f"to J = 50 at {rate * 50e3:g} m/s", alone(2.7 / rate, physics=FREE), states.expanding(rate))
+        Case("stretched", f"apart at {rate * 50e3:g} m/s", alone(2.7 / rate, physics=FREE), states.expanding(rate))
         for rate in (2e-3, 2e-2, 0.2)
     ]
     hot = [
@@ -110,22 +113,22 @@ def _states() -> list[Case]:
     hot.append(Case("hot", "one particle, 1e8 J/kg", alone(100.0, physics=FREE), states.one_hot(1e8)))
     break_up = 8.69e-4  # sqrt(4 pi G rho / 3)
     spins = [
-        Case("spin", f"{factor:g} of break-up", alone(2000.0, spin=(0.0, 0.0, factor * break_up), damage=damage))
-        for factor, damage in ((1.0, 0.0), (1.0, 1.0), (3.0, 1.0), (10.0, 0.0))
+        Case("spin", f"{factor:g} x break-up, D = {D:g}", alone(2000.0, spin=(0.0, 0.0, factor * break_up), damage=D))
+        for factor, D in ((1.0, 0.0), (1.0, 1.0), (3.0, 1.0), (10.0, 0.0))
     ]
     return compressed + pulled + hot + spins
 
 
 def _few_and_odd() -> list[Case]:
     counts = [Case("particles", f"2 x {n}", impact(particles=n)) for n in (1, 2, 10)]
-    counts += [Case("particles", str(n), alone(particles=n, hydrostatic=True)) for n in (1, 2)]
+    counts += [Case("particles", str(n), alone(particles=n, hydrostatic=True)) for n in (1, 2, 10)]
     places = [
         Case("place", "all in one point", alone(), states.coincident(1), physical=False),
         Case("place", "all in two points", alone(), states.coincident(2), physical=False),
         Case("place", "two in one point", alone(particles=2), states.coincident(1), physical=False),
         Case("place", "a node of weight 1e-15", pair((0.0, 0.0, 0.0)), states.barely_touching),
         Case("place", "1e8 m away", impact(share=0.2), states.distant(1e8)),
-        Case("place", "out of the grid's range", pair((2e4, 0.0, 0.0)), states.near_the_edge, physical=False),
+        Case("place", "leaves the grid's range", pair((2e4, 0.0, 0.0)), states.near_the_edge, physical=False),
     ]
     return [
         *counts,
@@ -145,7 +148,7 @@ def _flows() -> list[Case]:
     gravity = Gravity(softening=0.3, interval=1.0, opening=0.3)
     pressureless = Physics(shear=False, strength=False, fracture=None, gravity=gravity)
     return [
-        Case("flow", "rubble expands", alone(500.0, physics=LOOSE, damage=1.0), states.expanding(2e-3)),
+        Case("flow", "rubble expands to J = 50", alone(1350.0, physics=LOOSE, damage=1.0), states.expanding(2e-3)),
         Case("flow", "rubble flows together", alone(500.0, physics=LOOSE, damage=1.0), states.expanding(-2e-3)),
         Case("flow", "dust falls through a point", alone(2000.0, physics=pressureless, material=soft, damage=1.0)),
         Case("flow", "rubble in random motion", alone(500.0, physics=RUBBLE), states.random_motion(100.0, 1e-2)),
@@ -155,6 +158,22 @@ def _flows() -> list[Case]:
     ]
 
 
+def _single_precision() -> list[Case]:
+    hot = alone(100.0, physics=FREE)
+    cases = [
+        Case("f32", "200 m/s", impact()),
+        Case("f32", "20000 m/s", impact(velocity=2e4)),
+        Case("f32", "radius 100 m", impact(radius=100.0)),
+        Case("f32", "moduli x 1000", with_materials(impact(share=0.5), stiffened(1e3), stiffened(1e3))),
+        Case("f32", "at rest", alone(hydrostatic=True)),
+        Case("f32", "E = 1e+08 J/kg", hot, uniform(E=1e8)),
+        Case("f32", "1e8 m away", impact(share=0.2), states.distant(1e8)),
+        Case("f32", "Courant number 5", with_courant_number(impact(), 5.0), physical=False),
+    ]
+    return [replace(case, scene=in_single_precision(case.scene)) for case in cases]
+
+
 def all_cases() -> list[Case]:
     """Every case, group by group."""
-    return _time_steps() + _materials() + _impacts() + _states() + _few_and_odd() + _flows()
+    groups = (_time_steps, _materials, _impacts, _states, _few_and_odd, _flows, _single_precision)
+    return [case for group in groups for case in group()]

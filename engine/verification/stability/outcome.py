@@ -1,24 +1,21 @@
 """How a case ends: stable, stopped by a guard that names itself, or failed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 
 from engine import backend
-from engine.bounds import energy_growth, momentum_drift
 from engine.checkpoint import load_checkpoint, save_checkpoint
+from engine.errors import GuardFault
 from engine.guard import require_finite
-from engine.history import Row
 from engine.jobdir import JobDirectory, Status
+from engine.ledger import as_row
 from engine.run import Options, Run
 from engine.verification.stability.case import Case
+from engine.verification.stability.measures import Measures, measures
 
 STABLE, STOPPED, FAILED = "stable", "stopped", "failed"
-
-LARGEST_GROWTH = 0.02
-"""Growth of the total energy up to which a run is stable, in the measure of engine.bounds.energy_growth."""
 
 
 @dataclass(frozen=True)
@@ -26,32 +23,28 @@ class Outcome:
     """What a case came to.
 
     Attributes:
-        group, name, physical: of the case.
+        group, name, precision, physical: of the case.
         verdict: `stable`, `stopped` or `failed`.
         reason: why it was stopped or failed.
         steps: time steps done.
         progress: share of the simulated time that was reached.
-        energy_growth: largest growth of the total energy on the way, as a share of all energies [-].
-        dissipation: loss of total energy from start to end, as the same share [-].
-        momentum_drift: largest change of momentum over mass times the scene's speeds [-].
-        speed: highest speed, as a share of the guard's bound [-].
-        compression: highest rho/rho0 [-].
-        compression_bound: the guard's bound of it [-].
+        cpu_time: of the run, compilation included [s].
+        measures: what its history shows.
     """
 
     group: str
     name: str
+    precision: str
     physical: bool
     verdict: str
     reason: str
     steps: int = 0
     progress: float = 0.0
-    energy_growth: float = np.nan
-    dissipation: float = np.nan
-    momentum_drift: float = np.nan
-    speed: float = np.nan
-    compression: float = np.nan
-    compression_bound: float = np.nan
+    cpu_time: float = 0.0
+    measures: Measures = field(default_factory=Measures)
+
+    def __str__(self) -> str:
+        return f"{self.group:15} {self.name:27} {self.verdict:8} {self.steps:6d} steps  {self.reason}"
 
     @property
     def acceptable(self) -> bool:
@@ -59,83 +52,61 @@ class Outcome:
         return self.verdict == STABLE or (self.verdict == STOPPED and not self.physical)
 
 
+def failure(case: Case, reason: str) -> Outcome:
+    """What a case came to that left nothing to measure."""
+    return Outcome(case.group, case.name, case.scene.numerics.precision, case.physical, FAILED, reason)
+
+
 def run_case(case: Case, directory: Path) -> Outcome:
-    """Run a case as a job of its own; whatever goes wrong is an outcome too.
+    """Run a case as a job of its own, in this process; whatever goes wrong is an outcome too.
 
     Args:
         case: what to run.
-        directory: the job directory, made here.
+        directory: the job directory; there and empty.
     """
     try:
         return _run(case, directory)
     except Exception as error:  # any exception but a guard's is what the matrix looks for
-        return Outcome(case.group, case.name, case.physical, FAILED, f"{type(error).__name__}: {error}")
+        return failure(case, f"{type(error).__name__}: {error}")
 
 
 def _run(case: Case, directory: Path) -> Outcome:
     backend.start("cpu", threads=1)
-    directory.mkdir(parents=True)
-    job = JobDirectory(directory)
-    run = Run(case.scene, job, Options(checkpoint_interval=1.0))
+    run = Run(case.scene, JobDirectory(directory), Options(checkpoint_interval=1.0))
     _save_start(case, run)
     status = run.to_end()
-    verdict, reason = _verdict(run, status)
-    rows = run.history.rows
-    return Outcome(
-        case.group, case.name, case.physical, verdict, reason, status.step, status.progress, **_measures(run, rows)
-    )
+    found = measures(run.guard, run.history.rows, backend.EPSILON)
+    verdict, reason = _verdict(run, status, found)
+    known = (case.group, case.name, case.scene.numerics.precision, case.physical)
+    return Outcome(*known, verdict, reason, status.step, status.progress, status.cpu_time, found)
 
 
 def _save_start(case: Case, run: Run) -> None:
     """Write the changed initial state as a checkpoint, from which the run then begins."""
     start = case.scene.start_time
     run.simulation.start(**case.changes(case.scene))
+    # one that cannot be read back would silently be replaced by the scene's own start
+    require_finite(run.simulation.particles.read(), start)
     times = {"history_due": start, "snapshot_due": np.inf, "wall_time": 0.0, "cpu_time": 0.0}
     save_checkpoint(run.job, run.simulation, times)
 
 
-def _verdict(run: Run, status: Status) -> tuple[str, str]:
+def _verdict(run: Run, status: Status, found: Measures) -> tuple[str, str]:
     if status.state == "done":
-        growth = max(energy_growth(run.scene, row, run.history.rows[0]) for row in run.history.rows)
-        known = run.scene.physics.energy
-        grown = known and growth > LARGEST_GROWTH
-        return (FAILED, f"total energy grew by {growth:.2%} and no guard noticed") if grown else (STABLE, "")
+        broken = found.broken()
+        return (FAILED, f"{broken}, and no guard noticed") if broken else (STABLE, "")
     if status.fault and _checkpoint_is_good(run):
         return STOPPED, status.reason
     return FAILED, f"{status.reason}; no guard, or no checkpoint to go on from"
 
 
 def _checkpoint_is_good(run: Run) -> bool:
-    """Whether the checkpoint of a run that was stopped holds a state that the guard passes."""
-    if load_checkpoint(run.job, run.simulation) is None:
+    """Whether the checkpoint of a run that was stopped can be read and holds a state that the guard passes."""
+    simulation = run.simulation
+    if load_checkpoint(run.job, simulation) is None:
         return False
-    require_finite(run.simulation.particles.read(), run.simulation.time)
+    try:
+        run.guard.check(as_row(simulation.totals(), time=simulation.time), simulation.particles.read())
+    except GuardFault:
+        return False
     return True
-
-
-def _measures(run: Run, rows: list[Row]) -> dict[str, float]:
-    """What the history says; without a row nothing is known."""
-    if not rows:
-        return {}
-    growth = [energy_growth(run.scene, row, rows[0]) for row in rows]
-    known = run.scene.physics.energy
-    return {
-        "energy_growth": max(growth) if known else np.nan,
-        "dissipation": -growth[-1] if known else np.nan,
-        "momentum_drift": max(momentum_drift(row, rows[0]) for row in rows) / run.guard.momentum,
-        "speed": max(float(row["largest_speed"]) for row in rows) / run.guard.speed,
-        "compression": max(float(row["largest_compression"]) for row in rows),
-        "compression_bound": run.guard.compression,
-    }
-
-
-UNITS = {"steps": "time steps done", "progress": "share of the simulated time that was reached"}
-
-
-def dataset(outcomes: list[Outcome]) -> xr.Dataset:
-    """All outcomes, dimension case."""
-    names = list(Outcome.__dataclass_fields__)
-    columns = {name: ("case", np.array([getattr(outcome, name) for outcome in outcomes])) for name in names}
-    columns["physical"] = ("case", columns["physical"][1].astype(np.int8))
-    result = xr.Dataset(columns, attrs={"Conventions": "CF-1.11", "title": "Stability of stiff and extreme cases"})
-    return result.set_coords(["group", "name"])

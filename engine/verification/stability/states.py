@@ -76,8 +76,8 @@ def distant(distance: float) -> Changes:
 
 
 def near_the_edge(scene: Scene) -> Arrays:
-    """The second of two particles a thousand cells inside the range of the grid."""
-    return {"x": np.array([[0.0, 0.0, 0.0], [(EDGE * HALF_RANGE - 1000.0) * scene.dx, 0.0, 0.0]])}
+    """The second of two particles fifty cells inside the range of the grid."""
+    return {"x": np.array([[0.0, 0.0, 0.0], [(EDGE * HALF_RANGE - 50.0) * scene.dx, 0.0, 0.0]])}
 
 
 def one_hot(energy: float) -> Changes:

@@ -27,14 +27,25 @@ Array = NDArray[np.float64]
 CELLS = 4
 """Edge of the periodic block: waves of one to four cells, the shortest among them."""
 
-DENSE_LIMIT = float(np.sqrt(5.0 / 3.0))
-"""c dt/dx of dense particles: K = 68/35 c^2/dx^2 and T = 13/21 at the shortest wave."""
-
 START = 1e-6
 """Speed [m/s] of the random motion that must not grow."""
 
 ROUNDING = 1e-5
 """Excess of the spectral radius over one that is none: rigid motion is a double eigenvalue."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The largest stable time step of one block.
+
+    Attributes:
+        block: particles of a cell along its edges.
+        measured, theory: c dt/dx [-].
+    """
+
+    block: str
+    measured: float
+    theory: float
 
 
 @dataclass(frozen=True)
@@ -64,15 +75,21 @@ class Block:
         scene = Scene(bodies=(box,), period=(edge,) * 3, end_time=1e6, physics=physics, numerics=numerics)
         return scene.model_copy(update={"numerics": numerics.model_copy(update={"cfl": cfl})})
 
+    def limit(self) -> Limit:
+        """Both limits; Taichi must have been started."""
+        return Limit(self.name, self.measured(), self.theory())
+
     def theory(self) -> float:
         """Largest stable c dt/dx of the matrix of a step."""
-        return bisect(lambda courant: self._spectral_radius(courant) <= 1.0 + ROUNDING)
+        T, K = self._operators()
+        return bisect(lambda courant: spectral_radius(T, K, courant) <= 1.0 + ROUNDING)
 
     def measured(self) -> float:
         """Largest c dt/dx at which random motion of 1e-9 of the wave speed does not grow in the engine."""
-        return bisect(self._decays)
+        return bisect(self.decays)
 
-    def _decays(self, courant: float) -> bool:
+    def decays(self, courant: float) -> bool:
+        """Whether random motion does not grow in the engine at steps of c dt/dx."""
         generator, count = np.random.default_rng(1), int(np.prod(self.lattice))
         simulation = begin(self.scene(courant), v=START * generator.normal(size=(count, 3)))
         try:
@@ -83,13 +100,6 @@ class Block:
         state = simulation.particles.read("v", "C")  # one cell is a metre
         return bool(max(np.abs(state["v"]).max(), np.abs(state["C"]).max()) < 100.0 * START)
 
-    def _spectral_radius(self, courant: float) -> float:
-        T, K = self._operators
-        size, dt = len(K), courant
-        step = np.block([[T, -dt * np.eye(size)], [dt * K @ T, np.eye(size) - dt**2 * K]])
-        return float(np.abs(np.linalg.eigvals(step)).max())
-
-    @property
     def _operators(self) -> tuple[Array, Array]:
         """T and K on the velocities of all nodes, in units of dx and of the longitudinal speed."""
         W, D = self._weights()
@@ -108,6 +118,13 @@ class Block:
         spline = np.where(distance < 0.5, 0.75 - distance**2, 0.5 * np.maximum(1.5 - distance, 0.0) ** 2)
         W = spline.prod(axis=2)
         return W, 4.0 * np.einsum("pi,pia->pai", W, offset)
+
+
+def spectral_radius(T: Array, K: Array, courant: float) -> float:
+    """Largest growth of any wave in a step of c dt/dx."""
+    size, dt = len(K), courant
+    step = np.block([[T, -dt * np.eye(size)], [dt * K @ T, np.eye(size) - dt**2 * K]])
+    return float(np.abs(np.linalg.eigvals(step)).max())
 
 
 def _stiffness(D: Array) -> Array:

@@ -1,0 +1,70 @@
+"""The figure of all cases: groups as rows, their cases within, coloured by how they ended."""
+
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize, to_rgb
+from matplotlib.patches import Patch, Rectangle
+
+CELL = (1.0, 0.55)
+"""Width and height of a cell [inch]."""
+
+LETTERS = 14
+"""Letters of a cell's width."""
+
+COLORS = {"stopped": "tab:orange", "failed": "tab:red", "energy not known": "0.8"}
+
+MAP, LOSS = plt.get_cmap("YlGnBu"), Normalize(0.0, 1.0)
+
+
+def draw(cases: pd.DataFrame, path: Path) -> None:
+    """A stable case has the colour of the energy that it lost, others one of their own.
+
+    Args:
+        cases: one row a case, with `group`, `name`, `verdict` and `dissipation`.
+        path: the PNG to write.
+    """
+    groups = list(cases["group"].unique())
+    columns = int(cases.groupby("group").size().max())
+    size = (CELL[0] * columns + 2.2, CELL[1] * len(groups) + 0.8)
+    figure, axes = plt.subplots(figsize=size, layout="constrained")
+    for row, group in enumerate(groups):
+        for column, case in enumerate(cases[cases["group"] == group].itertuples()):
+            _cell(axes, column, row, case)
+    axes.set(xlim=(0, columns), ylim=(len(groups), 0), xticks=[])
+    axes.set_yticks(np.arange(len(groups)) + 0.5, groups)
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+    label = "stable: energy lost from start to end, as a share of all energies"
+    figure.colorbar(ScalarMappable(LOSS, MAP), ax=axes, label=label, aspect=40, pad=0.01)
+    patches = [Patch(color=color, label=name) for name, color in COLORS.items()]
+    axes.legend(handles=patches, loc="lower right", ncols=len(patches))
+    figure.savefig(path, dpi=80)
+    plt.close(figure)
+
+
+def _cell(axes: Axes, column: int, row: int, case: Any) -> None:
+    red, green, blue = _color(case.verdict, case.dissipation)
+    axes.add_patch(Rectangle((column, row), 1, 1, facecolor=(red, green, blue), edgecolor="white", lw=2.0))
+    # how bright it looks
+    ink = "white" if 0.3 * red + 0.6 * green + 0.1 * blue < 0.5 else "black"
+    name = fill(case.name, LETTERS, break_on_hyphens=False)
+    axes.text(column + 0.5, row + 0.5, name, ha="center", va="center", size=7.5, color=ink)
+
+
+def _color(verdict: str, dissipation: float) -> tuple[float, float, float]:
+    if verdict in COLORS:
+        return to_rgb(COLORS[verdict])
+    if np.isnan(dissipation):
+        return to_rgb(COLORS["energy not known"])
+    return to_rgb(MAP(LOSS(dissipation)))

@@ -1,0 +1,90 @@
+"""What the history of a run shows, and the bounds within which it is stable."""
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from engine.bounds import energy_growth, keeps_energy, momentum_drift
+from engine.guard import Guard
+from engine.history import Row
+
+LARGEST_GROWTH = 0.02
+"""Growth of the total energy up to which a run is stable, in the measure of engine.bounds.energy_growth."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Extremes over all rows of a history; NaN is not known.
+
+    Attributes:
+        mass_change: largest change of the total mass, as a share of it [-].
+        momentum_drift: largest change of momentum over mass times the scene's speeds [-].
+        momentum_bound: one unit in the last place of that per time step [-].
+        energy_growth: largest growth of the total energy, as a share of all energies [-].
+        dissipation: loss of total energy from start to end, as the same share [-].
+        speed: highest speed [m/s].
+        speed_bound: the guard's [m/s].
+        compression: highest rho/rho0 [-].
+        compression_bound: the guard's [-].
+    """
+
+    mass_change: float = np.nan
+    momentum_drift: float = np.nan
+    momentum_bound: float = np.nan
+    energy_growth: float = np.nan
+    dissipation: float = np.nan
+    speed: float = np.nan
+    speed_bound: float = np.nan
+    compression: float = np.nan
+    compression_bound: float = np.nan
+
+    def shares(self) -> dict[str, float]:
+        """How much of each bound is used up, 1 being all."""
+        return {
+            "mass": np.inf if self.mass_change else 0.0,
+            "momentum": self.momentum_drift / self.momentum_bound,
+            "energy": self.energy_growth / LARGEST_GROWTH,
+            "speed": self.speed / self.speed_bound,
+            "rho/rho0": max(self.compression - 1.0, 0.0) / (self.compression_bound - 1.0),
+        }
+
+    @property
+    def nearest(self) -> float:
+        """The largest share of a bound that is used up."""
+        known = [share for share in self.shares().values() if not np.isnan(share)]
+        return max(known, default=np.nan)
+
+    def broken(self) -> str:
+        """The bounds that do not hold, in words; empty if all do."""
+        return ", ".join(f"{name} at {share:.3g} of its bound" for name, share in self.shares().items() if share > 1.0)
+
+
+def measures(guard: Guard, rows: list[Row], epsilon: float) -> Measures:
+    """What the rows of a history say; without a row nothing is known.
+
+    Args:
+        guard: of the run.
+        rows: of its history.
+        epsilon: spacing of its numbers at 1.
+    """
+    if not rows:
+        return Measures()
+    start, last = rows[0], rows[-1]
+    growth = [energy_growth(guard.scene, row, start) for row in rows]
+    known = keeps_energy(guard.scene)
+    return Measures(
+        mass_change=max(abs(float(row["mass"] / start["mass"]) - 1.0) for row in rows),
+        momentum_drift=max(momentum_drift(row, start) for row in rows) / guard.momentum,
+        momentum_bound=epsilon * max(float(last["step"]), 1.0),
+        energy_growth=max(growth) if known else np.nan,
+        dissipation=-growth[-1] if known else np.nan,
+        speed=max(float(row["largest_speed"]) for row in rows),
+        speed_bound=guard.speed,
+        compression=max(float(row["largest_compression"]) for row in rows),
+        compression_bound=guard.compression,
+    )
+
+
+def as_numbers(found: Measures) -> dict[str, float]:
+    """All measures by name, with the nearest bound."""
+    return {**asdict(found), "nearest": found.nearest}
