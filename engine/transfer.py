@@ -124,13 +124,14 @@ class Transfer:
                 if b >= 0:
                     total += self.nodes[b * COPY + corner_offset(corner) + inner]
             if total[3] > 0.0:
-                velocity = vec4(total[0] / total[3], total[1] / total[3], total[2] / total[3], total[3])
+                velocity = vec3(total[0] / total[3], total[1] / total[3], total[2] / total[3])
                 if ti.static(self.has_walls):
                     velocity = self.walls.hold(self.place(tile, n), velocity)
+                result = vec4(velocity, total[3])
                 for corner in range(8):
                     b = self.source[tile, corner]
                     if b >= 0:
-                        self.nodes[b * COPY + corner_offset(corner) + inner] = velocity
+                        self.nodes[b * COPY + corner_offset(corner) + inner] = result
 
     @ti.func
     def place(self, tile, n):
@@ -283,10 +284,13 @@ class Transfer:
     def drift(self, p):
         """A particle that shares no node with another is ballistic: its strain rests, its spin stays.
 
-        Its speed limits the time step, lest it passes another unseen; so does its state, lest they meet in a long one.
+        A wall holds it back before it is behind. Its speed limits the time step, lest it passes another unseen; so does
+        its state, lest they meet in a long one.
         """
         dt = self.clock.dt[None]
         v = self.particles.v[p] + dt * self.gravity.at(p)
+        if ti.static(self.has_walls):
+            v = self.walls.hold(self.particles.x[p] + dt * v, v)
         self.particles.x[p] = self.particles.x[p] + dt * v
         self.particles.v[p] = v
         self.particles.C[p] = 0.5 * (self.particles.C[p] - self.particles.C[p].transpose())

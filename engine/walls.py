@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
-from engine.backend import Real, vec3, vec4
+from engine.backend import Real, vec3
 from engine.scene import Wall
 
 STICK = -1.0
@@ -14,7 +14,7 @@ STICK = -1.0
 
 @ti.data_oriented
 class Walls:
-    """Velocity that planes leave to nodes on or behind them; a node may always leave a wall that does not stick.
+    """Velocity that planes leave to what is on or behind them; all may always leave a wall that does not stick.
 
     Args:
         walls: the scene's walls, at least one.
@@ -31,13 +31,13 @@ class Walls:
 
     @ti.func
     def hold(self, x, velocity):
-        """Velocity [m/s] and, unchanged, the mass [kg] of a node at x [m]."""
-        v = vec3(velocity[0], velocity[1], velocity[2])
+        """Velocity [m/s] that is left at x [m]."""
+        v = velocity
         for i in range(self.count):
             wall = self.table[i]
             if x.dot(wall.normal) <= wall.level:
                 v = contact(v, wall.normal, wall.friction)
-        return vec4(v[0], v[1], v[2], velocity[3])
+        return v
 
 
 @ti.func

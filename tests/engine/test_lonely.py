@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.engine.moving import advance, body, scene, started
+from tests.engine.moving import RUBBLE, advance, body, scene, started
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -45,3 +45,22 @@ def test_lonely_particles_on_a_collision_course_meet():
         simulation.advance(simulation.scene.end_time)
     found = simulation.particles.read("x", "v")
     assert found["x"][0, 0] < found["x"][1, 0], "neither has passed through the other"
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1, "stick"])
+def test_a_lonely_particle_falls_onto_a_wall_and_stays(friction):
+    """All that gravity gives it in 12 s goes into the wall, and friction takes its share of that."""
+    one = body(particles=1, radius=100.0, position=(0.0, 0.0, 500.0), velocity=(20.0, 0.0, 0.0))
+    wall = {"normal": (0.0, 0.0, 2.0), "friction": friction}
+    physics = {**RUBBLE, "uniform_gravity": (0.0, 0.0, -9.81), "walls": [wall]}
+    simulation = started(scene(one, physics=physics, end_time=12.0))
+    lowest = 500.0
+    while not simulation.finished:
+        simulation.advance(simulation.scene.end_time, steps=1)
+        lowest = min(lowest, float(simulation.particles.read("x")["x"][0, 2]))
+    found = simulation.particles.read("x", "v")
+    assert lowest >= 0.0 and found["x"][0, 2] < 5.0, "as near as a step of the fall"
+    stopped = 9.81 * 12.0 + found["v"][0, 2]
+    along = 0.0 if friction == "stick" else 20.0 - friction * stopped
+    np.testing.assert_allclose(found["v"][0, :2], [along, 0.0], atol=1e-12)
+    assert stopped == pytest.approx(9.81 * 12.0, rel=2e-3)
