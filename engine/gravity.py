@@ -22,9 +22,10 @@ Places = NDArray[np.int64]
 class SelfGravity(ABC):
     """Pull of every particle, taken as a homogeneous ball of one radius, on every other.
 
-    `x`, `y`, `z`, `mu` (G times mass) hold the particles in an order that suits the solver; `ax`, `ay`, `az` or
-    `potential` receive its result. All are one component a field: a row of targets is then one piece of memory, and
-    their sums stay in registers.
+    `x`, `y`, `z`, `mu` (G times mass) and `radius` hold the particles in an order that suits the solver; `ax`, `ay`,
+    `az` or `potential` receive its result. Units are the powers of two near the largest coordinate and mu, so that no
+    power of a length is beyond single precision. All are one component a field: a row of targets is then one piece of
+    memory, and their sums stay in registers.
 
     Args:
         particles: state of the particles.
@@ -35,8 +36,7 @@ class SelfGravity(ABC):
     def __init__(self, particles: Any, radius: float, places: int) -> None:
         self.particles, self.count = particles, particles.count
         self.acceleration = particles.hold("acceleration")
-        self.radius = ti.field(Real, ())
-        self.radius[None] = radius
+        self.ball, self.radius = radius, ti.field(Real, ())
         shape = capacity(places)
         self.x, self.y, self.z, self.mu = (ti.field(Real, shape) for _ in range(4))
         self.ax, self.ay, self.az, self.potential = (ti.field(Real, shape) for _ in range(4))
@@ -62,8 +62,7 @@ class SelfGravity(ABC):
             What had to be taken out so that the pull has no net force and no net torque.
         """
         state = self.particles.read("x", "v", "mass")
-        x, v, mass = (state[name].astype(np.float64) for name in ("x", "v", "mass"))
-        x += ahead * v
+        x, mass = state["x"] + ahead * state["v"], state["mass"]
         pull = self._evaluate(x, mass, self.ax, self.ay, self.az)
         acceleration, taken_out = without_net_effect(pull, x, mass)
         self.particles.write({"acceleration": acceleration})
@@ -81,17 +80,20 @@ class SelfGravity(ABC):
         return 0.5 * float(np.sum(state["mass"] * potential[:, 0]))
 
     def _evaluate(self, x: Vectors, mass: Vectors, *wanted: ti.Field) -> Vectors:
-        """The wanted results of a solution, in the order of the particles."""
+        """The wanted results of a solution in SI units, in the order of the particles."""
         places = self.arrange(x)
         taken = places >= 0
         particle = np.where(taken, places, ~places)
-        sources = (*x[particle].T, np.where(taken, G * mass[particle], 0.0))
+        length, mu = _power_of_two(np.abs(x).max()), _power_of_two(G * mass.max())
+        sources = (*(x[particle] / length).T, np.where(taken, G * mass[particle] / mu, 0.0))
+        self.radius[None] = self.ball / length
         for field, values in zip((self.x, self.y, self.z, self.mu), sources, strict=True):
             overwrite(field, values)
         self.solve(potential=self.potential in wanted)
         place_of = np.empty(self.count, dtype=np.int64)
         place_of[particle[taken]] = np.flatnonzero(taken)
-        return np.stack([field.to_numpy()[place_of] for field in wanted], axis=1)
+        unit = mu / length if self.potential in wanted else mu / length**2
+        return unit * np.stack([field.to_numpy()[place_of] for field in wanted], axis=1, dtype=np.float64)
 
     @ti.func
     def at(self, p):
@@ -155,3 +157,8 @@ class SelfGravity(ABC):
             inverse = 1.0 / ti.sqrt(ti.max(square, ball))
             potential -= self.mu[q] * inverse * (1.5 - 0.5 * ti.min(square * inverse * inverse, 1.0))
         self.store(self.potential, t, potential)
+
+
+def _power_of_two(size: float) -> float:
+    """The unit near a size that changes no digit: the least power of two above it."""
+    return float(np.ldexp(1.0, np.frexp(size)[1]))
