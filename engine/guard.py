@@ -8,6 +8,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.backend import EPSILON
 from engine.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift, speed_scale
 from engine.errors import stop
 from engine.history import Row
@@ -21,8 +22,8 @@ SPEED_FACTOR = 10.0
 ENERGY_GROWTH = 0.05
 """Largest growth of the total energy, in the measure of `energy_growth`; all of it is the most that can be lost."""
 
-ROUNDINGS = 1e6
-"""Largest change of the total momentum, in units of the last place of mass times the scene's speeds."""
+LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
+"""Largest change of the total momentum, in units of mass times the scene's speeds."""
 
 STEPS_FACTOR = 1e4
 """Most time steps that a run may need, in units of what its first step foresees."""
@@ -59,7 +60,7 @@ class Guard:
         _require_at_most("speed [m/s]", np.linalg.norm(state["v"], axis=1), self.speed, time)
         _require_at_most("rho/rho0", 1.0 / (1.0 + state["j"]), self.compression, time)
         self._check_mass(row, time)
-        self._check_momentum(row, time, float(np.finfo(state["v"].dtype).eps))
+        self._check_momentum(row, time)
         self._check_energy(row, time)
 
     def check_time_step(self, dt: float, time: float, particles: Particles) -> None:
@@ -80,8 +81,8 @@ class Guard:
             advice = "particles were changed from outside: run the scene in a new directory"
             raise stop("total mass [kg]", mass, f"{expected!r}", time, advice=advice)
 
-    def _check_momentum(self, row: Row, time: float, rounding: float) -> None:
-        drift, allowed = momentum_drift(row, self.start), ROUNDINGS * rounding * self.momentum
+    def _check_momentum(self, row: Row, time: float) -> None:
+        drift, allowed = momentum_drift(row, self.start), LARGEST_DRIFT * self.momentum
         if keeps_momentum(self.scene) and not drift <= allowed:
             raise stop("change of total momentum [kg m/s]", drift, f"at most {allowed:.3g}", time)
 
