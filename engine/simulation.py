@@ -63,7 +63,7 @@ class Simulation:
         """Put all particles where the scene has them; `changes` replace whole fields of their state."""
         self.particles.write({**initial_state(self.scene), **changes})
         self.rebuild_blocks()
-        self.clock.rate[None] = max(self._first_rate(), self._rate_of_state())
+        self.clock.rate[None] = self._first_rate(self.particles.read("C", "tau", "body"))
 
     def advance(self, until: float, steps: int = LAUNCHES) -> None:
         """Take at most some `steps`, none of them after the first that reaches `until` [s].
@@ -137,7 +137,7 @@ class Simulation:
     @property
     def first_dt(self) -> float:
         """The time step [s] that the scene begins with."""
-        return float(1.0 / max(self._first_rate(), self.clock.least_rate[None]))
+        return float(1.0 / max(self._first_rate(initial_state(self.scene)), self.clock.least_rate[None]))
 
     def _check_fault(self) -> None:
         if self.clock.fault[None] != FAULT_NONE:
@@ -152,15 +152,14 @@ class Simulation:
             distance, advice = float(np.abs(x[p]).max()), "end the run earlier, or make cells larger"
             raise stop("coordinate [m]", distance, f"below {largest:.3g}", self.time, p, advice)
 
-    def _first_rate(self) -> float:
-        """Inverse time step [1/s] that bodies at rest density and full speed demand."""
+    def _first_rate(self, state: Arrays) -> float:
+        """Inverse time step [1/s] that bodies at rest density and full speed demand, in a state to begin with."""
         scene = self.scene
         speeds = [_fastest(body, material) for body, material in zip(scene.bodies, scene.materials, strict=True)]
-        return max(speeds) / (scene.numerics.cfl * scene.dx)
+        return max(max(speeds) / (scene.numerics.cfl * scene.dx), self._rate_of_state(state))
 
-    def _rate_of_state(self) -> float:
-        """Inverse time step [1/s] that present motion and stress inside particles demand (engine/transfer.py)."""
-        state = self.particles.read("C", "tau", "body")
+    def _rate_of_state(self, state: Arrays) -> float:
+        """Inverse time step [1/s] that motion and stress inside particles demand (engine/transfer.py)."""
         stress = np.sqrt(np.sum(state["tau"] ** 2 * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0], axis=1))
         release = 4.0 * float((stress / self.rho0(state)).max()) / self.scene.dx**2
         strain = float(np.linalg.norm(state["C"], axis=(1, 2)).max())

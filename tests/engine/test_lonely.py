@@ -20,12 +20,12 @@ def test_a_lonely_particle_flies_straight_with_a_frozen_state(gap):
     state = {
         "C": 1e-4 * generator.normal(size=(41, 3, 3)),
         "B": 1e-3 * generator.normal(size=(41, 6)),
-        "tau": np.zeros((41, 6)),
+        "tau": 1e8 * generator.normal(size=(41, 6)),
         "j": 1e-3 * generator.random(41),
         "E": generator.random(41),
         "root": np.full(41, 0.5),
     }
-    state["C"][1:] = 0.0
+    state["C"][1:] = state["tau"][1:] = 0.0
     simulation = advance(started(given, **state), 40)
     found = simulation.particles.read("x", "v", "C", "B", "tau", "j", "E", "root")
     for name in ("B", "tau", "j", "E", "root"):

@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 
+from engine.simulation import Simulation
+from tests.engine.device import Array
 from tests.engine.moving import RUBBLE, body, one_step, scene, started
-from tests.engine.oracle import LONGITUDINAL, RHO0
+from tests.engine.oracle import LONGITUDINAL, RHO0, G, squared_sound_speed
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -41,3 +43,47 @@ def test_viscosity_and_the_courant_number_shorten_the_time_step():
     simulation = started(given)
     assert one_step(simulation) == pytest.approx(0.2 * given.dx / LONGITUDINAL_SPEED, rel=1e-4)
     assert 1.0 / simulation.clock.rate[None] == pytest.approx(given.dx**2 / (6.0 * 3e9), rel=1e-4)
+
+
+def lonely(**state: Array) -> Simulation:
+    """One particle that flies at 500 m/s."""
+    return started(scene(body(particles=1, velocity=(0.0, 300.0, 400.0))), **state)
+
+
+@pytest.mark.parametrize("stress", [[1e11, 0.0, 0.0, 0.0, 0.0, 0.0], [-4e10, 2e10, 0.0, 3e10, 4e10, -5e10]])
+def test_stress_that_nothing_holds_shortens_the_first_and_all_further_time_steps(stress):
+    """It must not deform the particle by more than 0.3: 4 dt^2 |tau| / (rho0 dx^2), also when others come near."""
+    norm = np.sqrt(np.sum(np.square(stress) * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
+    simulation = lonely(tau=np.array([stress]))
+    expected = simulation.scene.dx * np.sqrt(0.3 * RHO0 / (4.0 * norm))
+    for _ in range(2):
+        assert one_step(simulation) == pytest.approx(expected, rel=1e-12)
+
+
+def test_stress_inside_matter_shortens_the_time_step_too():
+    """Matter that is everywhere at the same high pressure does not move, and yet could."""
+    cells = {"size": (4.0, 4.0, 4.0), "lattice": (8, 8, 8), "position": (2.0, 2.0, 2.0)}
+    given = scene(cells, period=(4.0, 4.0, 4.0), numerics={"particles_per_cell": 8.0, "cfl": 1.0})
+    simulation = started(given, j=np.full(512, -0.5))
+    one_step(simulation)
+    state = simulation.particles.read("tau", "C")
+    assert np.abs(state["C"]).max() < 1e-6
+    norm = np.sqrt(3.0) * np.abs(state["tau"][0, 0])
+    assert 1.0 / simulation.clock.rate[None] == pytest.approx(np.sqrt(0.3 * RHO0 / (4.0 * norm)), rel=1e-9)
+
+
+@pytest.mark.parametrize(("j", "E"), [(0.0, 0.0), (-0.4, 0.0), (0.2, 3e7), (-0.3, 1e8)])
+def test_a_lonely_particle_counts_with_the_sound_speed_of_its_state(j, E):
+    simulation = lonely(j=np.array([j]), E=np.array([E]))
+    one_step(simulation)
+    c2 = squared_sound_speed(np.array([1.0 / (1.0 + j) - 1.0]), np.array([E]))[0]
+    speed = np.sqrt(c2 + 4.0 / 3.0 * G / RHO0) + 500.0
+    assert 1.0 / simulation.clock.rate[None] == pytest.approx(0.5 * simulation.scene.dx / speed, rel=1e-9)
+
+
+def test_a_scene_begins_with_the_step_it_says():
+    """Also where fast rotation, not sound, limits it."""
+    for spin in (0.0, 10.0):
+        simulation = started(scene(body(spin=(0.0, 0.0, spin))))
+        assert one_step(simulation) == simulation.first_dt
+    assert simulation.first_dt == pytest.approx(0.3 / (np.sqrt(2.0) * 10.0), rel=1e-12)
