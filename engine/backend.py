@@ -23,10 +23,13 @@ PRECISION = chosen()
 """Name of the precision of this process."""
 
 Real = {"f64": ti.f64, "f32": ti.f32}[PRECISION]
-"""Precision of every field and literal."""
+"""Precision of every field and literal but time and place."""
 
 EPSILON = float(np.finfo(to_numpy_type(Real)).eps)
 """Spacing of its numbers at 1."""
+
+place3 = ti.types.vector(3, ti.f64)
+"""Positions are double: steps are so short against them that a single one would round away, the same way every time."""
 
 vec3 = ti.types.vector(3, Real)
 vec4 = ti.types.vector(4, Real)

@@ -52,7 +52,7 @@ def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: floa
         elastic: elastic energy of every particle [J], shape [particle_count].
         gravitational_energy, half_step_work: [J].
     """
-    m, x, v, C, E = (state[name].astype(np.float64) for name in ("mass", "x", "v", "C", "E"))
+    m, x, v, C, E = (state[name] for name in ("mass", "x", "v", "C", "E"))
     inertia = 0.25 * dx**2  # second moment of the quadratic spline, per mass
     skew = np.stack([C[:, 2, 1] - C[:, 1, 2], C[:, 0, 2] - C[:, 2, 0], C[:, 1, 0] - C[:, 0, 1]], axis=1)
     return Totals(
@@ -90,7 +90,7 @@ def elastic_energy(state: Arrays, rho0: Vector, bulk: Vector, shear: Vector) -> 
         state: fields j, tau and mass of every particle.
         rho0, bulk, shear: reference density [kg/m^3] and moduli [Pa] of every particle, shape [particle_count].
     """
-    s = state["tau"].astype(np.float64)
+    s = state["tau"].copy()
     pressure = -np.sum(s[:, :3], axis=1) / 3.0
     s[:, :3] += pressure[:, None]
     square = np.sum(s[:, :3] ** 2, axis=1) + 2.0 * np.sum(s[:, 3:] ** 2, axis=1)

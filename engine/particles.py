@@ -6,12 +6,12 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.backend import Real, capacity, mat3, overwrite, vec3, vec6
+from engine.backend import Real, capacity, mat3, overwrite, place3, vec3, vec6
 
 Arrays = dict[str, NDArray[Any]]
 
 KINDS = {
-    "x": vec3,
+    "x": place3,
     "v": vec3,
     "C": mat3,
     "j": Real,
@@ -66,7 +66,7 @@ class Particles:
         return tuple(name for name in KINDS if name in vars(self))
 
     def read(self, *names: str) -> Arrays:
-        """Copies of the named quantities, of all when none is named; first axis the particle."""
+        """Copies of the named quantities in double precision, of all when none is named; first axis the particle."""
         return {name: self._values(name) for name in names or KINDS}
 
     def write(self, arrays: Arrays) -> None:
@@ -99,8 +99,8 @@ class Particles:
     def _values(self, name: str) -> NDArray[Any]:
         if name in self.held:
             values = getattr(self, name).to_numpy()[: self.count]
-            result = np.empty_like(values)
+            result = np.empty(values.shape, np.float64 if values.dtype.kind == "f" else values.dtype)
             result[self.order] = values
-            return np.asarray(result)
+            return result
         kind = KINDS[name]
         return np.zeros((self.count, *(kind.get_shape() if hasattr(kind, "get_shape") else ())))

@@ -68,7 +68,7 @@ class Transfer:
         self.clock, self.walls = clock, walls
         self.by_block, self.has_walls = not on_gpu(), walls is not None
         self.capacity = capacity(blocks)
-        self.dx, self.cfl = ti.field(Real, ()), ti.field(Real, ())
+        self.dx, self.cfl = ti.field(ti.f64, ()), ti.field(Real, ())
         self.dx[None], self.cfl[None] = dx, cfl
         self.block_count, self.tile_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.shared_count, self.alone_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
@@ -142,7 +142,7 @@ class Transfer:
             b = self.source[tile, corner]
             if b >= 0:
                 first = 4 * (self.origin[b] + ti.Vector([corner >> 2, (corner >> 1) & 1, corner & 1])) - 1
-        return self.dx[None] * ti.cast(first + node, Real)
+        return self.dx[None] * ti.cast(first + node, ti.f64)
 
     @ti.kernel
     def grid_to_particles(self):
@@ -183,7 +183,7 @@ class Transfer:
             limits: speed of signals [m/s], squares of velocity gradient [1/s^2] and of acceleration [m^2/s^4],
                 diffusivity [m^2/s].
         """
-        dx = self.dx[None]
+        dx = ti.cast(self.dx[None], Real)
         wave, deformation = limits[0] / (self.cfl[None] * dx), ti.sqrt(limits[1]) / LARGEST_INCREMENT
         fall, diffusion = ti.sqrt(ti.sqrt(limits[2]) / dx), 6.0 * limits[3] / (dx * dx)
         self.clock.report_rate(ti.max(wave, deformation, fall, diffusion))
@@ -193,12 +193,12 @@ class Transfer:
         """Lowest node of particle p within its block's copy, and the particle's distance from it in cells."""
         scaled = self.particles.x[p] / self.dx[None]
         base = ti.floor(scaled - 0.5, ti.i32)
-        return base - 4 * origin + 1, scaled - ti.cast(base, Real)
+        return base - 4 * origin + 1, ti.cast(scaled - ti.cast(base, ti.f64), Real)
 
     @ti.func
     def scatter(self, p, b):
         """Add particle p to the nodes of block b, axis by axis: what is added is linear in the distance from it."""
-        dx = self.dx[None]
+        dx = ti.cast(self.dx[None], Real)
         local, f = self.locate(p, self.origin[b])
         w = spline_weights(f)
         mass, dt = self.particles.mass[p], self.clock.dt[None]
@@ -250,7 +250,7 @@ class Transfer:
         if alone:
             limits = self.drift(p)
         else:
-            per_dx = 4.0 / self.dx[None]
+            per_dx = 4.0 / ti.cast(self.dx[None], Real)
             L = per_dx * mat3(by_x[0], by_y[0], by_z[0], by_x[1], by_y[1], by_z[1], by_x[2], by_y[2], by_z[2])
             limits = self.move(p, vec3(v[0], v[1], v[2]), L)
         self.check_place(p)
@@ -299,7 +299,7 @@ class Transfer:
     @ti.func
     def release(self, p):
         """Growth [1/s^2] of the velocity gradient of particle p under its own stress, where nothing else holds it."""
-        dx, rho0 = self.dx[None], self.constitution.table[self.particles.body[p]].rho0
+        dx, rho0 = ti.cast(self.dx[None], Real), self.constitution.table[self.particles.body[p]].rho0
         return 4.0 * ti.sqrt(norm_squared(unpack(self.particles.tau[p]))) / (rho0 * dx * dx)
 
     @ti.func
@@ -332,6 +332,7 @@ def affine_velocity(L, dt, j):
     """
     C, J = symmetric(L @ (identity() + dt * L).inverse()), 1.0 + j
     dilation = ti.max(J * (1.0 + determinant_increment(dt * L)), 1.0) / ti.max(J, 1.0)
-    if not dilation**2 * norm_squared(C) ** 3 <= (1.0 + ROUNDING) * norm_squared(symmetric(L)) ** 3:
+    after, before = ti.cast(norm_squared(C), ti.f64), ti.cast(norm_squared(symmetric(L)), ti.f64)
+    if not dilation**2 * after**3 <= (1.0 + ROUNDING) * before**3:  # sixth powers: single precision has no room
         C = symmetric(L) / ti.max(dilation, 1.0) ** (1.0 / 3.0)
     return C + 0.5 * (L - L.transpose())

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
-from engine.backend import Real, vec3
+from engine.backend import Real, place3, vec3
 from engine.scene import Wall
 
 STICK = -1.0
@@ -22,7 +22,7 @@ class Walls:
 
     def __init__(self, walls: Sequence[Wall]) -> None:
         self.count = len(walls)
-        self.table = ti.types.struct(normal=vec3, level=Real, friction=Real).field(shape=self.count)
+        self.table = ti.types.struct(normal=place3, level=ti.f64, friction=Real).field(shape=self.count)
         for i, wall in enumerate(walls):
             normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
             self.table.normal[i] = normal
@@ -36,7 +36,7 @@ class Walls:
         for i in range(self.count):
             wall = self.table[i]
             if x.dot(wall.normal) <= wall.level:
-                v = contact(v, wall.normal, wall.friction)
+                v = contact(v, ti.cast(wall.normal, Real), wall.friction)
         return v
 
 
