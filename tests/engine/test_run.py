@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from engine import PHYSICS_VERSION
 from engine.jobdir import JobDirectory
 from engine.storage import read_dataset, write_dataset
 from tests.engine.jobs import (
@@ -123,6 +124,27 @@ def test_a_checkpoint_of_another_scene_is_refused(tmp_path: Path) -> None:
     result = run_engine(directory)
     assert result.returncode == 2
     assert "another scene" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"velocity": 100.0}, "final.nc: belongs to another scene; run the changed scene in a new directory"),
+        ({}, f"final.nc: written with physics version {PHYSICS_VERSION + 1}, this is version {PHYSICS_VERSION}"),
+    ],
+)
+def test_a_finished_job_of_another_scene_or_version_is_refused(
+    tmp_path: Path, reference: Path, changes: dict[str, float], told: str
+) -> None:
+    directory = write_job(tmp_path / "job", **changes)
+    for name in ("final.nc", "history.nc", "status.json"):
+        shutil.copy(reference / name, directory / name)
+    if not changes:
+        other = {"physics_version": PHYSICS_VERSION + 1}
+        write_dataset(directory / "final.nc", read_dataset(directory / "final.nc").assign_attrs(other))
+    result = run_engine(directory)
+    assert result.returncode == 2
+    assert told in result.stderr
 
 
 @pytest.mark.parametrize(
