@@ -187,7 +187,7 @@ class Run:
 
     def _write_snapshot(self) -> None:
         self.job.snapshots.mkdir(exist_ok=True)
-        write_dataset(self.job.snapshots / f"{self.simulation.time:.3f}.nc", self._particles(np.float32))
+        write_dataset(self.job.snapshot(self.simulation.step), self._particles(np.float32))
 
     def _write_history(self) -> None:
         attributes = {"scene_hash": self.scene.hash(), "physics_version": PHYSICS_VERSION}

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from analysis.particles import snapshots
 from engine import PHYSICS_VERSION
 from engine.jobdir import JobDirectory
 from engine.storage import read_dataset, write_dataset
@@ -86,6 +87,16 @@ def test_snapshots_do_not_change_the_run_between_them(tmp_path: Path, reference:
     assert run_engine(directory).returncode == 0
     assert_same(read_dataset(directory / "history.nc"), read_dataset(reference / "history.nc"))
     assert len(list((directory / "snapshots").glob("*.nc"))) >= 4
+
+
+def test_every_snapshot_of_a_short_run_has_its_own_file(tmp_path: Path) -> None:
+    pebble = {"radius": 1.0, "particles": 60}
+    scene = {"bodies": [pebble], "end_time": 8e-4, "output": {"snapshot_interval": 1e-4}}
+    (tmp_path / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
+    assert run_engine(tmp_path).returncode == 0
+    in_order_of_names = [read_dataset(path).attrs["time"] for path in sorted((tmp_path / "snapshots").iterdir())]
+    assert len(in_order_of_names) >= 4 and in_order_of_names == sorted(set(in_order_of_names))
+    assert [time for time, _ in snapshots(JobDirectory(tmp_path))] == in_order_of_names
 
 
 def test_a_finished_job_is_left_alone(reference: Path) -> None:
