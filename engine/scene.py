@@ -198,12 +198,14 @@ def scene_in(directory: Path) -> Scene:
     """The scene of a job directory, `scene.json` or `scene.toml`.
 
     Raises:
-        SceneError: neither file is there, or it is not a scene.
+        SceneError: neither file is there, or both are, or it is not a scene.
     """
-    for name in ("scene.json", "scene.toml"):
-        if (directory / name).is_file():
-            return read_scene(directory / name)
-    raise SceneError(f"{directory}: holds no scene.json or scene.toml; write the scene to run there first")
+    found = [path for path in (directory / "scene.json", directory / "scene.toml") if path.is_file()]
+    if not found:
+        raise SceneError(f"{directory}: holds no scene.json or scene.toml; write the scene to run there first")
+    if len(found) > 1:
+        raise SceneError(f"{directory}: holds scene.json and scene.toml; keep the one to run")
+    return read_scene(found[0])
 
 
 def scene_at(source: Path) -> Scene:

@@ -89,6 +89,13 @@ def test_a_directory_without_a_scene_says_what_to_write(tmp_path: Path):
         scene_in(tmp_path)
 
 
+def test_a_directory_with_two_scenes_is_refused(tmp_path: Path):
+    for name in ("scene.json", "scene.toml"):
+        (tmp_path / name).write_text("")
+    with pytest.raises(SceneError, match=r"holds scene\.json and scene\.toml"):
+        scene_in(tmp_path)
+
+
 def test_a_scene_survives_being_written_and_read(tmp_path: Path):
     one = scene(physics={"viscosity": {"shear": 1e5}}, bodies=[BODY, {**BODY, "spin": [0, 0, 1e-4]}])
     (tmp_path / "scene.json").write_text(one.canonical())
