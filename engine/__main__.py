@@ -97,6 +97,7 @@ def verify(
 
     Exit code 0: all errors are allowed; 1: one is not; 2: bad input.
     """
+    choose("f64")
     from engine.verification.catalogue import FULL, SHORT
     from engine.verification.figures import draw
     from engine.verification.report import frame, run_all, table
@@ -125,6 +126,7 @@ def accuracy(
     workers: Annotated[int, typer.Option(min=1, help="Runs at the same time, one thread each.")] = os.cpu_count() or 1,
 ) -> None:
     """Turn every knob of the verification scenes; measure error and CPU time. What DIRECTORY holds is not repeated."""
+    choose("f64")
     from engine.verification.knobs import TRADEOFFS
     from engine.verification.sweep import orders, read, sweep
     from engine.verification.work_precision import draw
@@ -148,6 +150,7 @@ def stability(
 
     Exit code 0: none failed and no physical one was stopped; 1: one did; 2: bad input.
     """
+    choose("f64")
     if directory.exists():
         _exit(f"{directory}: exists already; name a new directory", BAD_INPUT)
     from engine.verification.stability.matrix import find_limits, run_all
