@@ -12,8 +12,8 @@ from rich.console import Console
 
 from engine.errors import JobBusyError, JobError, RunFault, SceneError
 from engine.jobdir import JobDirectory, Status
+from engine.mistakes import suggestion
 from engine.precision import choose
-from engine.validation import suggestion
 
 application = typer.Typer(
     add_completion=False, no_args_is_help=True, help="One simulation: a scene in, a job directory out."
@@ -104,7 +104,7 @@ def verify(
 
     known = FULL if full else SHORT
     for name in set(names or ()) - set(known):
-        _exit(f"unknown problem '{name}'{suggestion(name, list(known))}", BAD_INPUT)
+        _exit(f"unknown problem '{name}'{suggestion(name, list(known), 'problems')}", BAD_INPUT)
     chosen = [known[name] for name in names or known]
     with Console(stderr=True).status("running") as spinner:
         results = []
@@ -132,7 +132,7 @@ def accuracy(
     from engine.verification.work_precision import draw
 
     for name in set(names or ()) - set(TRADEOFFS):
-        _exit(f"unknown scene '{name}'{suggestion(name, list(TRADEOFFS))}", BAD_INPUT)
+        _exit(f"unknown scene '{name}'{suggestion(name, list(TRADEOFFS), 'scenes')}", BAD_INPUT)
     directory.mkdir(parents=True, exist_ok=True)
     for run in sweep(names or TRADEOFFS, directory / "scenes.nc", workers):
         typer.echo(f"{run.scene:12} {run.knob:28} {run.value:>8}  error {run.error:9.3g}  {run.cpu_time:8.2f} s")

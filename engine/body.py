@@ -6,10 +6,13 @@ from typing import Annotated
 from pydantic import Field
 
 from engine.materials import Material
-from engine.validation import Frozen, Positive, Vector
+from engine.validation import Frozen, Number, Positive, Vector, Whole
 
 PositiveVector = tuple[Positive, Positive, Positive]
-Count = Annotated[int, Field(ge=1)]
+MOST_PARTICLES = 2**30
+"""Particles that 32-bit indices can count, in fields whose sizes are powers of two."""
+
+Count = Annotated[Whole, Field(ge=1, le=MOST_PARTICLES)]
 
 
 class Solid(Frozen):
@@ -20,7 +23,7 @@ class Solid(Frozen):
     velocity: Vector = (0.0, 0.0, 0.0)
     spin: Vector = (0.0, 0.0, 0.0)
     material: Material = Material()
-    damage: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    damage: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.0
 
     @property
     @abstractmethod

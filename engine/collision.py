@@ -5,11 +5,12 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from engine.body import Body
+from engine.body import MOST_PARTICLES, Body, Count
 from engine.materials import PARAMETER_SETS, Fracture, Material
+from engine.mistakes import suggestion
 from engine.orbit import Approach, approach
-from engine.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Viscosity
-from engine.validation import Finite, Frozen, Positive, suggestion
+from engine.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, Viscosity
+from engine.validation import Finite, Frozen, NonNegative, Number, Positive
 
 
 class Collision(Frozen):
@@ -28,16 +29,16 @@ class Collision(Frozen):
     """
 
     velocity: Positive
-    angle: Annotated[float, Field(ge=0.0, le=90.0)]
+    angle: Annotated[Number, Field(ge=0.0, le=90.0)]
     radius: Positive = 50.0e3
     projectile_radius: Positive | None = None
-    particles: Annotated[int, Field(ge=1)] = 20000
+    particles: Count = 20000
     end_time: Finite = 15200.0
-    start_separation: Annotated[float, Field(gt=1.0, allow_inf_nan=False)] = 2.0
-    seed: Annotated[int, Field(ge=0)] = 1
+    start_separation: Annotated[Number, Field(gt=1.0, allow_inf_nan=False)] = 2.0
+    seed: Seed = 1
     parameter_set: str = "sugiura2018"
     material: Material = Material()
-    friction: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
+    friction: NonNegative | None = None
     fracture: Fracture | None = None
     gravity: Gravity | None = Gravity()
     viscosity: Viscosity | None = None
@@ -48,7 +49,7 @@ class Collision(Frozen):
     @model_validator(mode="after")
     def _parameter_set_is_known(self) -> Self:
         if self.parameter_set not in PARAMETER_SETS:
-            hint = suggestion(self.parameter_set, list(PARAMETER_SETS))
+            hint = suggestion(self.parameter_set, list(PARAMETER_SETS), "parameter sets")
             raise ValueError(f"unknown parameter_set '{self.parameter_set}'{hint}")
         return self
 
@@ -56,6 +57,16 @@ class Collision(Frozen):
     def _ends_after_contact(self) -> Self:
         if self.end_time <= 0.0:
             raise ValueError(f"end_time counts from contact: {self.end_time} s must be greater than 0")
+        return self
+
+    @model_validator(mode="after")
+    def _projectile_can_be_counted(self) -> Self:
+        largest = self.radius * (MOST_PARTICLES / self.particles) ** (1.0 / 3.0)
+        if self.projectile_radius and self.projectile_radius > largest:
+            raise ValueError(
+                f"'projectile_radius' {self.projectile_radius} m takes more than {MOST_PARTICLES} particles of the "
+                f"target's size: give at most {largest:.3g} m, or fewer 'particles'"
+            )
         return self
 
     def bodies_at_contact(self) -> tuple[Body, Body]:

@@ -6,21 +6,26 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from engine.blocks import EDGE
-from engine.body import Body, Box
+from engine.body import MOST_PARTICLES, Body, Box
 from engine.errors import SceneError
 from engine.materials import Fracture, Material
 from engine.precision import Precision
-from engine.validation import Finite, Frozen, NonNegative, Positive, Vector, read_table, validate
+from engine.validation import Finite, Frozen, NonNegative, Number, Positive, Vector, Whole, read_table, validate
 
-Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
+Fraction = Annotated[Number, Field(gt=0.0, le=1.0)]
+Seed = Annotated[Whole, Field(ge=0)]
 
 
 def _shape(body: Any) -> str:
     """Which shape of body plain keys describe."""
-    return "<box>" if isinstance(body, Box) or (isinstance(body, dict) and "lattice" in body) else "<sphere>"
+    is_box = isinstance(body, Box) or (isinstance(body, dict) and ("lattice" in body or "size" in body))
+    return Box.__name__ if is_box else Body.__name__
 
 
-AnyBody = Annotated[Annotated[Body, Tag("<sphere>")] | Annotated[Box, Tag("<box>")], Discriminator(_shape)]
+AnyBody = Annotated[
+    Annotated[Body, Tag(Body.__name__)] | Annotated[Box, Tag(Box.__name__)],
+    Discriminator(_shape),
+]
 
 
 class Gravity(Frozen):
@@ -33,7 +38,7 @@ class Gravity(Frozen):
 
     softening: Positive = 1.0
     interval: Positive = 20.0
-    opening: Annotated[float, Field(ge=0.0, le=1.0)] = 0.4
+    opening: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.4
 
 
 class Viscosity(Frozen):
@@ -60,7 +65,7 @@ class Wall(Frozen):
 
     point: Vector = (0.0, 0.0, 0.0)
     normal: Vector = (0.0, 0.0, 1.0)
-    friction: NonNegative | Literal["stick"] = 0.0
+    friction: Literal["stick"] | NonNegative = 0.0
 
     @model_validator(mode="after")
     def _has_a_direction(self) -> Self:
@@ -137,7 +142,7 @@ class Scene(Frozen):
     period: tuple[Positive | None, Positive | None, Positive | None] = (None, None, None)
     start_time: Finite = 0.0
     end_time: Finite
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: Seed = 1
     physics: Physics = Physics()
     numerics: Numerics = Numerics()
     output: Output = Output()
@@ -146,6 +151,14 @@ class Scene(Frozen):
     def _ends_after_start(self) -> Self:
         if self.end_time <= self.start_time:
             raise ValueError(f"end_time {self.end_time} s is not after start_time {self.start_time} s")
+        return self
+
+    @model_validator(mode="after")
+    def _particles_can_be_counted(self) -> Self:
+        if self.particles > MOST_PARTICLES:
+            raise ValueError(
+                f"'bodies' hold {self.particles} particles in all; at most {MOST_PARTICLES} can be counted"
+            )
         return self
 
     @model_validator(mode="after")

@@ -147,7 +147,7 @@ def test_expansion_leaves_the_study_as_it_is():
     assert study.model_dump() == before
 
 
-@pytest.mark.parametrize(("name", "jobs"), [("accuracy", 86), ("quick", 9), ("sugiura2018", 72), ("talk2025", 3)])
+@pytest.mark.parametrize(("name", "jobs"), [("accuracy", 96), ("quick", 9), ("sugiura2018", 72), ("talk2025", 3)])
 def test_shipped_studies(name, jobs):
     campaign = expand(read_study(find_study(name)), name)
     assert campaign.name == name

@@ -15,7 +15,7 @@ SETTINGS = {
     "angle": st.floats(0.0, 89.0),
     "radius": st.floats(1e3, 6e4),
     "projectile_radius": st.one_of(st.none(), st.floats(1e3, 6e4)),
-    "particles": st.integers(1, 10**6),
+    "particles": st.integers(1, 4000),
 }
 
 
@@ -131,6 +131,16 @@ BAD = {
     "ends at contact": ({"end_time": 0.0}, "end_time", "0.0", "greater than 0"),
     "large step": ({"numerics": {"cfl": 1.5}}, "'numerics.cfl'", "1.5"),
     "nonsense flaws": ({"fracture": {"flaws": "many"}}, "'fracture.flaws'", "'covered' or '2NlnN'", "'many'"),
+    "switch for a speed": ({"velocity": True}, "'velocity'", "a number, not true or false", "True"),
+    "switch for a seed": ({"seed": False}, "'seed'", "a number, not true or false", "False"),
+    "switch for what has a default": ({"friction": False}, "'friction'", "a number, not true or false"),
+    "too many particles": ({"particles": 10**10}, "'particles'", "less than or equal to 1073741824"),
+    "too many particles in the projectile": (
+        {"projectile_radius": 1e7},
+        "'projectile_radius' 10000000.0 m",
+        "at most 1.89e+06 m",
+    ),
+    "key of numerics": ({"precision": "f32"}, "unknown key 'precision'", "did you mean 'numerics.precision'"),
     "negative seed": ({"seed": -1}, "'seed'", "-1"),
 }
 

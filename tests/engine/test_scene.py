@@ -11,6 +11,7 @@ from engine.scene import Body, Scene, read_scene, scene_in
 from engine.validation import validate
 
 BODY: dict[str, Any] = {"radius": 50e3, "particles": 1000}
+BOX: dict[str, Any] = {"size": [1.0, 1.0, 1.0], "lattice": [2, 2, 2]}
 SCENE: dict[str, Any] = {"bodies": [BODY], "end_time": 10.0}
 
 
@@ -52,6 +53,20 @@ BAD = {
     "empty cells": ({"numerics": {"particles_per_cell": 0.0}}, "'numerics.particles_per_cell'", "0.0"),
     "no steps": ({"numerics": {"cfl": 0.0}}, "'numerics.cfl'", "0.0"),
     "word for a flag": ({"physics": {"shear": "perhaps"}}, "'physics.shear'", "boolean", "'perhaps'"),
+    "switch for a number": (with_body(radius=True), "'bodies.1.radius'", "a number, not true or false", "True"),
+    "switch for a count": (with_body(particles=True), "'bodies.1.particles'", "a number, not true or false"),
+    "switch in a vector": (with_body(position=[0.0, False, 0.0]), "'bodies.1.position.1'", "not true or false"),
+    "more particles than indices": (with_body(particles=10**10), "'bodies.1.particles'", "less than", "1073741824"),
+    "far more particles": (with_body(particles=1e24), "'bodies.1.particles'", "too large", "1e+24"),
+    "too many particles in all": (with_body(particles=2**30), "'bodies' hold 1073742824 particles in all", "at most"),
+    "no body": ({"bodies": [3]}, "'bodies.0'", "a table of keys", "3"),
+    "sphere and box": ({"bodies": [{**BOX, "radius": 1.0}]}, "unknown key 'bodies.0.radius'", "known keys", "lattice"),
+    "box without lattice": ({"bodies": [{"size": [1.0, 1.0, 1.0]}]}, "missing key 'bodies.0.lattice'"),
+    "box without size": ({"bodies": [{"lattice": [1, 1, 1]}]}, "missing key 'bodies.0.size'"),
+    "misspelt friction": ({"physics": {"walls": [{"friction": "stik"}]}}, "walls.0.friction'", "'stick' or", "number"),
+    "word for a table": ({"numerics": "f32"}, "'numerics'", "a table of keys", "'f32'"),
+    "key of a table inside": ({"cfl": 0.1}, "unknown key 'cfl'", "did you mean 'numerics.cfl'"),
+    "part of physics outside": ({"gravity": {}}, "unknown key 'gravity'", "did you mean 'physics.gravity'"),
     "key without relatives": ({"zzzz": 1}, "unknown key 'zzzz'", "known keys: bodies"),
 }
 
