@@ -1,16 +1,16 @@
 """The builder of collision scenes: two spheres meeting at a given speed and angle (engine/physics.md, section 8)."""
 
-from typing import Annotated, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from engine.body import MOST_PARTICLES, Body, Count
 from engine.materials import PARAMETER_SETS, Fracture, Material
 from engine.mistakes import suggestion
 from engine.orbit import Approach, approach
 from engine.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, Viscosity
-from engine.validation import Finite, Frozen, NonNegative, Number, Positive
+from engine.validation import Finite, Frozen, NonNegative, Number, OrOff, Positive
 
 
 class Collision(Frozen):
@@ -24,7 +24,7 @@ class Collision(Frozen):
     start_separation: distance of the centres at the start, in contact distances R1 + R2.
     parameter_set: constants and rules of friction and fracture, `sugiura2018` or `talk`.
     friction: friction coefficient of damaged rock [-], when other than the parameter set's.
-    fracture: rules of fracture, when other than the parameter set's.
+    fracture: rules of fracture that replace those of the parameter set; `false` leaves fracture out.
     sound_speed: factor on the speed of sound, see engine.scene.Physics.
     """
 
@@ -39,12 +39,26 @@ class Collision(Frozen):
     parameter_set: str = "sugiura2018"
     material: Material = Material()
     friction: NonNegative | None = None
-    fracture: Fracture | None = None
-    gravity: Gravity | None = Gravity()
-    viscosity: Viscosity | None = None
+    fracture: Fracture | Literal[False] | None = None
+    gravity: OrOff[Gravity] = Gravity()
+    viscosity: OrOff[Viscosity] = None
     sound_speed: Fraction = 1.0
     numerics: Numerics = Numerics()
     output: Output = Output()
+
+    @field_validator("fracture", mode="before")
+    @classmethod
+    def _rules_not_given_are_those_of_the_set(cls, given: Any, info: ValidationInfo) -> Any:
+        rules = PARAMETER_SETS.get(str(info.data.get("parameter_set")))
+        changes = given.model_dump(exclude_unset=True) if isinstance(given, Fracture) else given
+        return rules.fracture.model_dump() | changes if rules and isinstance(changes, dict) else given
+
+    @field_validator("material")
+    @classmethod
+    def _has_no_friction_of_its_own(cls, material: Material) -> Material:
+        if material.damaged_friction != Material().damaged_friction:
+            raise ValueError("'damaged_friction' is the parameter set's here; give 'friction' of the collision instead")
+        return material
 
     @model_validator(mode="after")
     def _parameter_set_is_known(self) -> Self:
@@ -97,6 +111,7 @@ class Collision(Frozen):
         """The scene at the start of the approach, in the frame of the centre of mass."""
         start = self.approach()
         target, projectile = self.bodies_at_contact()
+        rules = PARAMETER_SETS[self.parameter_set].fracture if self.fracture is None else self.fracture
         fraction = projectile.mass / (target.mass + projectile.mass)
         return Scene(
             bodies=(_moved(target, start, -fraction), _moved(projectile, start, 1.0 - fraction)),
@@ -104,7 +119,7 @@ class Collision(Frozen):
             end_time=self.end_time,
             seed=self.seed,
             physics=Physics(
-                fracture=self.fracture or PARAMETER_SETS[self.parameter_set].fracture,
+                fracture=rules or None,
                 gravity=self.gravity,
                 viscosity=self.viscosity,
                 sound_speed=self.sound_speed,

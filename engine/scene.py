@@ -10,7 +10,7 @@ from engine.body import MOST_PARTICLES, Body, Box
 from engine.errors import SceneError
 from engine.materials import Fracture, Material
 from engine.precision import Precision
-from engine.validation import Finite, Frozen, NonNegative, Number, Positive, Vector, Whole, read_table, validate
+from engine.validation import Finite, Frozen, NonNegative, Number, OrOff, Positive, Vector, Whole, read_table, validate
 
 Fraction = Annotated[Number, Field(gt=0.0, le=1.0)]
 Seed = Annotated[Whole, Field(ge=0)]
@@ -75,7 +75,7 @@ class Wall(Frozen):
 
 
 class Physics(Frozen):
-    """The parts of physics a scene uses; `null` leaves a part out, and it then costs nothing.
+    """The parts of physics a scene uses; `false` leaves a part out, and it then costs nothing.
 
     Pressure is always Tillotson's; without `energy` it follows the cold curve, and the ledger has no internal energy.
     `shear` adds the Hencky deviatoric stress, `strength` its radial return;
@@ -90,21 +90,23 @@ class Physics(Frozen):
     energy: bool = True
     shear: bool = True
     strength: bool = True
-    fracture: Fracture | None = Fracture()
-    gravity: Gravity | None = Gravity()
-    viscosity: Viscosity | None = None
-    uniform_gravity: Vector | None = None
+    fracture: OrOff[Fracture] = Fracture()
+    gravity: OrOff[Gravity] = Gravity()
+    viscosity: OrOff[Viscosity] = None
+    uniform_gravity: OrOff[Vector] = None
     walls: tuple[Wall, ...] = ()
     sound_speed: Fraction = 1.0
 
     @model_validator(mode="after")
     def _parts_fit_together(self) -> Self:
         if self.strength and not self.shear:
-            raise ValueError("'strength' limits shear stress: it needs shear = true")
+            raise ValueError(
+                "'strength' limits shear stress: it needs shear = true; or set strength and fracture = false"
+            )
         if self.fracture and not self.strength:
-            raise ValueError("'fracture' weakens strength: it needs strength = true")
+            raise ValueError("'fracture' weakens strength: it needs strength = true; or set fracture = false")
         if self.gravity and self.uniform_gravity:
-            raise ValueError("'uniform_gravity' takes the place of self-gravity: it needs gravity = null")
+            raise ValueError("'uniform_gravity' takes the place of self-gravity: it needs gravity = false")
         return self
 
 
@@ -125,21 +127,21 @@ class Output(Frozen):
     """What is written while the scene runs.
 
     history_interval: simulated time [s] between rows of the conserved quantities.
-    snapshot_interval: simulated time [s] between particle snapshots; `null` writes none.
+    snapshot_interval: simulated time [s] between particle snapshots; `false` writes none.
     """
 
     history_interval: Positive = 100.0
-    snapshot_interval: Positive | None = 1000.0
+    snapshot_interval: OrOff[Positive] = 1000.0
 
 
 class Scene(Frozen):
     """Everything a run depends on; the same scene gives the same results.
 
-    period: length [m] after which space repeats along each axis, a multiple of four cells; `null` is unbounded.
+    period: length [m] after which space repeats along each axis, a multiple of four cells; `false` is unbounded.
     """
 
     bodies: Annotated[tuple[AnyBody, ...], Field(min_length=1)]
-    period: tuple[Positive | None, Positive | None, Positive | None] = (None, None, None)
+    period: tuple[OrOff[Positive], OrOff[Positive], OrOff[Positive]] = (None, None, None)
     start_time: Finite = 0.0
     end_time: Finite
     seed: Seed = 1
@@ -168,7 +170,7 @@ class Scene(Frozen):
             if round(blocks) < 1 or abs(blocks - round(blocks)) > 1e-6:
                 raise ValueError(f"'period' {length} m is not a multiple of {EDGE} cells of {self.dx} m")
         if any(self.period) and self.physics.gravity:
-            raise ValueError("'period' repeats space without end: self-gravity needs it to be null")
+            raise ValueError("'period' repeats space without end: it needs physics.gravity = false")
         return self
 
     @property

@@ -26,6 +26,10 @@ Positive = Annotated[Finite, Field(gt=0.0)]
 NonNegative = Annotated[Finite, Field(ge=0.0)]
 Vector = tuple[Finite, Finite, Finite]
 Model = TypeVar("Model", bound=BaseModel)
+Kind = TypeVar("Kind")
+# TOML has no null
+OrOff = Annotated[Kind | None, BeforeValidator(lambda value: None if value is False else value)]
+"""A part that `false` leaves out."""
 
 
 class Frozen(BaseModel):

@@ -50,7 +50,8 @@ BAD_STUDIES = {
         ["velocity 100.0", "same simulation"],
     ),
     "axis without effect": (
-        HEAD + "[collision]\nfriction = 0.5\n[collision.fracture]\nflaws = 'covered'\n"
+        HEAD + "[collision]\nfriction = 0.5\n[collision.fracture]\n"
+        "flaws = 'covered'\nstrain = 'young'\ngrowth_speed = 0.4\nper_flaw = true\n"
         "[axes]\nvelocity = [100]\nangle = [5]\nparameter_set = ['talk', 'sugiura2018']\n",
         ["talk", "sugiura2018", "same simulation"],
     ),

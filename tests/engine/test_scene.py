@@ -42,8 +42,15 @@ BAD = {
     "ends before it starts": ({"end_time": -5.0}, "end_time -5.0", "start_time 0.0"),
     "starts at infinity": ({"start_time": float("-inf")}, "'start_time'", "finite", "-inf"),
     "no end": ({"end_time": None}, "'end_time'", "None"),
-    "strength without shear": ({"physics": {"shear": False, "fracture": None}}, "'strength'", "shear = true"),
+    "strength without shear": (
+        {"physics": {"shear": False, "fracture": None}},
+        "'strength'",
+        "shear = true",
+        "fracture = false",
+    ),
     "fracture without strength": ({"physics": {"strength": False}}, "'fracture'", "strength = true"),
+    "two gravities": ({"physics": {"uniform_gravity": [0, 0, -1]}}, "'uniform_gravity'", "gravity = false"),
+    "yes for a table": ({"physics": {"gravity": True}}, "'physics.gravity'", "a table of keys", "True"),
     "misspelt physics": ({"physics": {"gravty": None}}, "'physics.gravty'", "did you mean 'gravity'"),
     "misspelt gravity": ({"physics": {"gravity": {"softning": 1}}}, "softning", "did you mean 'softening'"),
     "no interval": ({"physics": {"gravity": {"interval": 0}}}, "'physics.gravity.interval'", "greater than 0"),
@@ -116,6 +123,29 @@ def test_a_scene_survives_being_written_and_read(tmp_path: Path):
     (tmp_path / "scene.json").write_text(one.canonical())
     assert scene_in(tmp_path) == one
     assert json.loads(one.canonical())["bodies"][1]["spin"] == [0.0, 0.0, 1e-4]
+
+
+def test_false_leaves_a_part_out_as_null_does_since_toml_has_no_null(tmp_path: Path):
+    path = tmp_path / "scene.toml"
+    path.write_text("""
+        end_time = 10.0
+        period = [4e5, false, false]
+        bodies = [{size = [1e5, 1e5, 1e5], lattice = [4, 4, 4]}]
+        [numerics]
+        particles_per_cell = 1
+        [physics]
+        fracture = false
+        gravity = false
+        viscosity = false
+        uniform_gravity = [0.0, 0.0, -1.0]
+        [output]
+        snapshot_interval = false
+    """)
+    parts = {"fracture": None, "gravity": None, "viscosity": None, "uniform_gravity": [0.0, 0.0, -1.0]}
+    box = {"size": [1e5, 1e5, 1e5], "lattice": [4, 4, 4]}
+    same = {"period": [4e5, None, None], "numerics": {"particles_per_cell": 1}, "output": {"snapshot_interval": None}}
+    assert read_scene(path) == scene(bodies=[box], physics=parts, **same)
+    assert read_scene(path).physics.gravity is None
 
 
 def test_equal_scenes_have_equal_hashes_and_others_not():
