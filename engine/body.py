@@ -1,7 +1,7 @@
 """Bodies a scene can hold: a sphere or a box of equal particles. SI units throughout."""
 
 from abc import abstractmethod
-from typing import Annotated
+from typing import Annotated, Self
 
 from pydantic import Field
 
@@ -57,11 +57,18 @@ class Solid(Frozen):
 
 
 class Body(Solid):
-    """A homogeneous sphere of `particles` equal particles."""
+    """A homogeneous sphere of `particles` equal particles.
+
+    hydrostatic: start under the pressure that its own gravity keeps; not given, where the scene has self-gravity.
+    """
 
     radius: Positive
     particles: Count
-    hydrostatic: bool = True
+    hydrostatic: bool | None = None
+
+    def balanced(self, gravity: bool) -> Self:
+        """The same body, hydrostatic under its own gravity unless it says otherwise."""
+        return self if self.hydrostatic is not None else self.model_copy(update={"hydrostatic": gravity})
 
     @property
     def volume(self) -> float:

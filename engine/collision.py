@@ -90,12 +90,9 @@ class Collision(Frozen):
         material = self.material.model_copy(update={"damaged_friction": friction})
         small = self.radius if self.projectile_radius is None else self.projectile_radius
         share = max(1, round(self.particles * (small / self.radius) ** 3))
-        hydrostatic = self.gravity is not None
         return (
-            Body(
-                name="target", radius=self.radius, particles=self.particles, material=material, hydrostatic=hydrostatic
-            ),
-            Body(name="projectile", radius=small, particles=share, material=material, hydrostatic=hydrostatic),
+            Body(name="target", radius=self.radius, particles=self.particles, material=material),
+            Body(name="projectile", radius=small, particles=share, material=material),
         )
 
     def approach(self) -> Approach:

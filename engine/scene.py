@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from engine.blocks import EDGE
 from engine.body import MOST_PARTICLES, Body, Box
@@ -140,14 +140,28 @@ class Scene(Frozen):
     period: length [m] after which space repeats along each axis, a multiple of four cells; `false` is unbounded.
     """
 
+    physics: Physics = Physics()  # checked before bodies, whose start depends on it
     bodies: Annotated[tuple[AnyBody, ...], Field(min_length=1)]
     period: tuple[OrOff[Positive], OrOff[Positive], OrOff[Positive]] = (None, None, None)
     start_time: Finite = 0.0
     end_time: Finite
     seed: Seed = 1
-    physics: Physics = Physics()
     numerics: Numerics = Numerics()
     output: Output = Output()
+
+    @field_validator("bodies")
+    @classmethod
+    def _bear_their_own_weight(cls, bodies: tuple[AnyBody, ...], info: ValidationInfo) -> tuple[AnyBody, ...]:
+        physics = info.data.get("physics", Physics())
+        return tuple(body.balanced(physics.gravity is not None) if isinstance(body, Body) else body for body in bodies)
+
+    @model_validator(mode="after")
+    def _has_the_gravity_of_its_balance(self) -> Self:
+        if not self.physics.gravity and any(isinstance(body, Body) and body.hydrostatic for body in self.bodies):
+            raise ValueError(
+                "'hydrostatic' pressure needs self-gravity to hold it: leave it out of the body, or set it to false"
+            )
+        return self
 
     @model_validator(mode="after")
     def _ends_after_start(self) -> Self:

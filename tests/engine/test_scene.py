@@ -49,6 +49,11 @@ BAD = {
         "fracture = false",
     ),
     "fracture without strength": ({"physics": {"strength": False}}, "'fracture'", "strength = true"),
+    "pressure that nothing holds": (
+        {"bodies": [{**BODY, "hydrostatic": True}], "physics": {"gravity": None}},
+        "'hydrostatic'",
+        "needs self-gravity",
+    ),
     "two gravities": ({"physics": {"uniform_gravity": [0, 0, -1]}}, "'uniform_gravity'", "gravity = false"),
     "yes for a table": ({"physics": {"gravity": True}}, "'physics.gravity'", "a table of keys", "True"),
     "misspelt physics": ({"physics": {"gravty": None}}, "'physics.gravty'", "did you mean 'gravity'"),
@@ -74,7 +79,7 @@ BAD = {
     "word for a table": ({"numerics": "f32"}, "'numerics'", "a table of keys", "'f32'"),
     "key of a table inside": ({"cfl": 0.1}, "unknown key 'cfl'", "did you mean 'numerics.cfl'"),
     "part of physics outside": ({"gravity": {}}, "unknown key 'gravity'", "did you mean 'physics.gravity'"),
-    "key without relatives": ({"zzzz": 1}, "unknown key 'zzzz'", "known keys: bodies"),
+    "key without relatives": ({"zzzz": 1}, "unknown key 'zzzz'", "known keys: physics, bodies"),
 }
 
 
@@ -165,6 +170,15 @@ def test_spacing_is_that_of_the_coarsest_body():
     two = Scene(bodies=(fine, coarse), end_time=1.0)
     assert two.spacing == pytest.approx((4.0 / 3.0 * np.pi * 1e9 / 10) ** (1 / 3))
     assert scene(numerics={"particles_per_cell": 8.0}).dx == pytest.approx(2.0 * scene().spacing)
+
+
+@pytest.mark.parametrize("pull", [None, (0.0, 0.0, -1.0)])
+def test_without_self_gravity_a_body_starts_without_pressure(pull: tuple[float, float, float] | None):
+    floating = scene(physics={"gravity": None, "uniform_gravity": pull})
+    assert floating.bodies[0].hydrostatic is False and not initial_state(floating)["tau"].any()
+    assert scene().bodies[0].hydrostatic is True and initial_state(scene())["tau"].any()
+    assert scene().hash() == scene(bodies=[{**BODY, "hydrostatic": True}]).hash()
+    assert scene(bodies=[{**BODY, "hydrostatic": False}]).bodies[0].hydrostatic is False
 
 
 def test_a_spinning_body_starts_as_a_rigid_rotation_in_hydrostatic_balance():
