@@ -14,8 +14,8 @@ from campaigns.study import Study
 from engine import PHYSICS_VERSION
 from engine.collision import Collision
 from engine.errors import SceneError
+from engine.mistakes import suggestion
 from engine.scene import Scene
-from engine.validation import suggestion
 
 
 def expand(study: Study, source: str) -> Campaign:

@@ -6,9 +6,8 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from engine.collision import Collision
-from engine.validation import Frozen
-
-Seed = Annotated[int, Field(ge=0)]
+from engine.scene import Seed
+from engine.validation import Frozen, Number
 
 
 class ErrorBars(Frozen):
@@ -18,7 +17,7 @@ class ErrorBars(Frozen):
     seeds: seeds of both resolutions.
     """
 
-    coarser: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.5
+    coarser: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.5
     seeds: Annotated[tuple[Seed, ...], Field(min_length=2)]
 
     @model_validator(mode="after")

@@ -9,7 +9,8 @@ from campaigns.keys import flatten, nest
 from campaigns.members import ErrorBars
 from engine.collision import Collision
 from engine.errors import SceneError
-from engine.validation import Frozen, read_table, suggestion, validate
+from engine.mistakes import KeysOf, suggestion
+from engine.validation import Frozen, read_table, validate
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)]
 
@@ -45,7 +46,7 @@ class Study(Frozen):
 
     name: Name
     description: str = ""
-    collision: Annotated[dict[str, Any], Field(default_factory=dict)]
+    collision: Annotated[dict[str, Any], KeysOf(Collision), Field(default_factory=dict)]
     axes: dict[str, Any] | None = None
     cases: list[Case] | None = None
     error_bars: ErrorBars | None = None
@@ -84,7 +85,7 @@ def find_study(name: str) -> Path:
         return SHIPPED / f"{name}.toml"
     if Path(name).exists():
         return Path(name)
-    raise SceneError(f"no study '{name}': neither a file nor a shipped study{suggestion(name, names)}")
+    raise SceneError(f"no study '{name}': neither a file nor a shipped study{suggestion(name, names, 'studies')}")
 
 
 def read_study(path: Path) -> Study:

@@ -12,8 +12,8 @@ from rich.console import Console
 
 from engine.errors import JobBusyError, JobError, RunFault, SceneError
 from engine.jobdir import JobDirectory, Status
+from engine.mistakes import suggestion
 from engine.precision import choose
-from engine.validation import suggestion
 
 application = typer.Typer(
     add_completion=False, no_args_is_help=True, help="One simulation: a scene in, a job directory out."
@@ -97,13 +97,14 @@ def verify(
 
     Exit code 0: all errors are allowed; 1: one is not; 2: bad input.
     """
+    choose("f64")
     from engine.verification.catalogue import FULL, SHORT
     from engine.verification.figures import draw
     from engine.verification.report import frame, run_all, table
 
     known = FULL if full else SHORT
     for name in set(names or ()) - set(known):
-        _exit(f"unknown problem '{name}'{suggestion(name, list(known))}", BAD_INPUT)
+        _exit(f"unknown problem '{name}'{suggestion(name, list(known), 'problems')}", BAD_INPUT)
     chosen = [known[name] for name in names or known]
     with Console(stderr=True).status("running") as spinner:
         results = []
@@ -125,12 +126,13 @@ def accuracy(
     workers: Annotated[int, typer.Option(min=1, help="Runs at the same time, one thread each.")] = os.cpu_count() or 1,
 ) -> None:
     """Turn every knob of the verification scenes; measure error and CPU time. What DIRECTORY holds is not repeated."""
+    choose("f64")
     from engine.verification.knobs import TRADEOFFS
     from engine.verification.sweep import orders, read, sweep
     from engine.verification.work_precision import draw
 
     for name in set(names or ()) - set(TRADEOFFS):
-        _exit(f"unknown scene '{name}'{suggestion(name, list(TRADEOFFS))}", BAD_INPUT)
+        _exit(f"unknown scene '{name}'{suggestion(name, list(TRADEOFFS), 'scenes')}", BAD_INPUT)
     directory.mkdir(parents=True, exist_ok=True)
     for run in sweep(names or TRADEOFFS, directory / "scenes.nc", workers):
         typer.echo(f"{run.scene:12} {run.knob:28} {run.value:>8}  error {run.error:9.3g}  {run.cpu_time:8.2f} s")
@@ -148,6 +150,7 @@ def stability(
 
     Exit code 0: none failed and no physical one was stopped; 1: one did; 2: bad input.
     """
+    choose("f64")
     if directory.exists():
         _exit(f"{directory}: exists already; name a new directory", BAD_INPUT)
     from engine.verification.stability.matrix import find_limits, run_all

@@ -1,15 +1,18 @@
 """Bodies a scene can hold: a sphere or a box of equal particles. SI units throughout."""
 
 from abc import abstractmethod
-from typing import Annotated
+from typing import Annotated, Self
 
 from pydantic import Field
 
 from engine.materials import Material
-from engine.validation import Frozen, Positive, Vector
+from engine.validation import Frozen, Number, Positive, Vector, Whole
 
 PositiveVector = tuple[Positive, Positive, Positive]
-Count = Annotated[int, Field(ge=1)]
+MOST_PARTICLES = 2**30
+"""Particles that 32-bit indices can count, in fields whose sizes are powers of two."""
+
+Count = Annotated[Whole, Field(ge=1, le=MOST_PARTICLES)]
 
 
 class Solid(Frozen):
@@ -20,7 +23,7 @@ class Solid(Frozen):
     velocity: Vector = (0.0, 0.0, 0.0)
     spin: Vector = (0.0, 0.0, 0.0)
     material: Material = Material()
-    damage: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    damage: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.0
 
     @property
     @abstractmethod
@@ -54,11 +57,18 @@ class Solid(Frozen):
 
 
 class Body(Solid):
-    """A homogeneous sphere of `particles` equal particles."""
+    """A homogeneous sphere of `particles` equal particles.
+
+    hydrostatic: start under the pressure that its own gravity keeps; not given, where the scene has self-gravity.
+    """
 
     radius: Positive
     particles: Count
-    hydrostatic: bool = True
+    hydrostatic: bool | None = None
+
+    def balanced(self, gravity: bool) -> Self:
+        """The same body, hydrostatic under its own gravity unless it says otherwise."""
+        return self if self.hydrostatic is not None else self.model_copy(update={"hydrostatic": gravity})
 
     @property
     def volume(self) -> float:

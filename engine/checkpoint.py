@@ -9,6 +9,7 @@ from engine import PHYSICS_VERSION
 from engine.errors import JobError
 from engine.jobdir import JobDirectory
 from engine.particles import Particles
+from engine.scene import Scene
 from engine.simulation import Simulation
 from engine.storage import is_finite, read_dataset, write_dataset
 
@@ -47,9 +48,24 @@ def load_checkpoint(job: JobDirectory, simulation: Simulation) -> dict[str, floa
     for path in (job.checkpoint, job.previous_checkpoint):
         dataset = _readable(path, simulation.particles)
         if dataset is not None:
-            _refuse_foreign(dataset, simulation, str(path))
+            refuse_foreign(dataset, simulation.scene, path)
             return _restore(dataset, simulation)
     return None
+
+
+def refuse_foreign(dataset: xr.Dataset, scene: Scene, path: Path) -> None:
+    """Accept only what a run of this scene, with this version of physics, has written.
+
+    Raises:
+        JobError: the file at `path` belongs to another scene or physics version.
+    """
+    if int(dataset.attrs["physics_version"]) != PHYSICS_VERSION:
+        raise JobError(
+            f"{path}: written with physics version {dataset.attrs['physics_version']}, this is version "
+            f"{PHYSICS_VERSION}; results would mix: run the scene in a new directory"
+        )
+    if dataset.attrs["scene_hash"] != scene.hash():
+        raise JobError(f"{path}: belongs to another scene; run the changed scene in a new directory")
 
 
 def _dimensions(name: str, ndim: int) -> tuple[str, ...]:
@@ -64,16 +80,6 @@ def _readable(path: Path, particles: Particles) -> xr.Dataset | None:
     except JobError:
         return None
     return dataset if is_finite(dataset) and set(particles.held) <= set(dataset.data_vars) else None
-
-
-def _refuse_foreign(dataset: xr.Dataset, simulation: Simulation, path: str) -> None:
-    if int(dataset.attrs["physics_version"]) != PHYSICS_VERSION:
-        raise JobError(
-            f"{path}: written with physics version {dataset.attrs['physics_version']}, this is version "
-            f"{PHYSICS_VERSION}; results would mix: run the scene in a new directory"
-        )
-    if dataset.attrs["scene_hash"] != simulation.scene.hash():
-        raise JobError(f"{path}: belongs to another scene; run the changed scene in a new directory")
 
 
 def _restore(dataset: xr.Dataset, simulation: Simulation) -> dict[str, float]:

@@ -1,15 +1,16 @@
 """The builder of collision scenes: two spheres meeting at a given speed and angle (engine/physics.md, section 8)."""
 
-from typing import Annotated, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from engine.body import Body
+from engine.body import MOST_PARTICLES, Body, Count
 from engine.materials import PARAMETER_SETS, Fracture, Material
+from engine.mistakes import suggestion
 from engine.orbit import Approach, approach
-from engine.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Viscosity
-from engine.validation import Finite, Frozen, Positive, suggestion
+from engine.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, Viscosity
+from engine.validation import Finite, Frozen, NonNegative, Number, OrOff, Positive
 
 
 class Collision(Frozen):
@@ -23,32 +24,46 @@ class Collision(Frozen):
     start_separation: distance of the centres at the start, in contact distances R1 + R2.
     parameter_set: constants and rules of friction and fracture, `sugiura2018` or `talk`.
     friction: friction coefficient of damaged rock [-], when other than the parameter set's.
-    fracture: rules of fracture, when other than the parameter set's.
+    fracture: rules of fracture that replace those of the parameter set; `false` leaves fracture out.
     sound_speed: factor on the speed of sound, see engine.scene.Physics.
     """
 
     velocity: Positive
-    angle: Annotated[float, Field(ge=0.0, le=90.0)]
+    angle: Annotated[Number, Field(ge=0.0, le=90.0)]
     radius: Positive = 50.0e3
     projectile_radius: Positive | None = None
-    particles: Annotated[int, Field(ge=1)] = 20000
+    particles: Count = 20000
     end_time: Finite = 15200.0
-    start_separation: Annotated[float, Field(gt=1.0, allow_inf_nan=False)] = 2.0
-    seed: Annotated[int, Field(ge=0)] = 1
+    start_separation: Annotated[Number, Field(gt=1.0, allow_inf_nan=False)] = 2.0
+    seed: Seed = 1
     parameter_set: str = "sugiura2018"
     material: Material = Material()
-    friction: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
-    fracture: Fracture | None = None
-    gravity: Gravity | None = Gravity()
-    viscosity: Viscosity | None = None
+    friction: NonNegative | None = None
+    fracture: Fracture | Literal[False] | None = None
+    gravity: OrOff[Gravity] = Gravity()
+    viscosity: OrOff[Viscosity] = None
     sound_speed: Fraction = 1.0
     numerics: Numerics = Numerics()
     output: Output = Output()
 
+    @field_validator("fracture", mode="before")
+    @classmethod
+    def _rules_not_given_are_those_of_the_set(cls, given: Any, info: ValidationInfo) -> Any:
+        rules = PARAMETER_SETS.get(str(info.data.get("parameter_set")))
+        changes = given.model_dump(exclude_unset=True) if isinstance(given, Fracture) else given
+        return rules.fracture.model_dump() | changes if rules and isinstance(changes, dict) else given
+
+    @field_validator("material")
+    @classmethod
+    def _has_no_friction_of_its_own(cls, material: Material) -> Material:
+        if material.damaged_friction != Material().damaged_friction:
+            raise ValueError("'damaged_friction' is the parameter set's here; give 'friction' of the collision instead")
+        return material
+
     @model_validator(mode="after")
     def _parameter_set_is_known(self) -> Self:
         if self.parameter_set not in PARAMETER_SETS:
-            hint = suggestion(self.parameter_set, list(PARAMETER_SETS))
+            hint = suggestion(self.parameter_set, list(PARAMETER_SETS), "parameter sets")
             raise ValueError(f"unknown parameter_set '{self.parameter_set}'{hint}")
         return self
 
@@ -58,6 +73,16 @@ class Collision(Frozen):
             raise ValueError(f"end_time counts from contact: {self.end_time} s must be greater than 0")
         return self
 
+    @model_validator(mode="after")
+    def _projectile_can_be_counted(self) -> Self:
+        largest = self.radius * (MOST_PARTICLES / self.particles) ** (1.0 / 3.0)
+        if self.projectile_radius and self.projectile_radius > largest:
+            raise ValueError(
+                f"'projectile_radius' {self.projectile_radius} m takes more than {MOST_PARTICLES} particles of the "
+                f"target's size: give at most {largest:.3g} m, or fewer 'particles'"
+            )
+        return self
+
     def bodies_at_contact(self) -> tuple[Body, Body]:
         """Target and projectile, both still at the origin."""
         chosen = PARAMETER_SETS[self.parameter_set]
@@ -65,12 +90,9 @@ class Collision(Frozen):
         material = self.material.model_copy(update={"damaged_friction": friction})
         small = self.radius if self.projectile_radius is None else self.projectile_radius
         share = max(1, round(self.particles * (small / self.radius) ** 3))
-        hydrostatic = self.gravity is not None
         return (
-            Body(
-                name="target", radius=self.radius, particles=self.particles, material=material, hydrostatic=hydrostatic
-            ),
-            Body(name="projectile", radius=small, particles=share, material=material, hydrostatic=hydrostatic),
+            Body(name="target", radius=self.radius, particles=self.particles, material=material),
+            Body(name="projectile", radius=small, particles=share, material=material),
         )
 
     def approach(self) -> Approach:
@@ -86,6 +108,7 @@ class Collision(Frozen):
         """The scene at the start of the approach, in the frame of the centre of mass."""
         start = self.approach()
         target, projectile = self.bodies_at_contact()
+        rules = PARAMETER_SETS[self.parameter_set].fracture if self.fracture is None else self.fracture
         fraction = projectile.mass / (target.mass + projectile.mass)
         return Scene(
             bodies=(_moved(target, start, -fraction), _moved(projectile, start, 1.0 - fraction)),
@@ -93,7 +116,7 @@ class Collision(Frozen):
             end_time=self.end_time,
             seed=self.seed,
             physics=Physics(
-                fracture=self.fracture or PARAMETER_SETS[self.parameter_set].fracture,
+                fracture=rules or None,
                 gravity=self.gravity,
                 viscosity=self.viscosity,
                 sound_speed=self.sound_speed,

@@ -3,6 +3,9 @@
 import math
 from dataclasses import dataclass
 
+SMALLER_STEPS = "try a smaller numerics.cfl"
+"""Advice where an unstable time step may be the cause."""
+
 
 class SceneError(ValueError):
     """The input cannot be used: says which file and key, what was given, and what is allowed."""
@@ -64,7 +67,8 @@ def stop(
     allowed: str,
     time: float,
     particle: int | None = None,
-    advice: str = "try a smaller numerics.cfl",
+    *,
+    advice: str,
 ) -> GuardFault:
     """What to raise to stop a run; arguments as the attributes of `Fault`, except that `value` may not be finite."""
     return GuardFault(Fault(quantity, value if math.isfinite(value) else None, allowed, time, particle, advice))

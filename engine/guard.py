@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from engine.backend import EPSILON
 from engine.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift, speed_scale
-from engine.errors import stop
+from engine.errors import SMALLER_STEPS, stop
 from engine.history import Row
 from engine.particles import Arrays, Particles
 from engine.scene import Scene
@@ -27,6 +27,9 @@ LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
 
 STEPS_FACTOR = 1e4
 """Most time steps that a run may need, in units of what its first step foresees."""
+
+LOOK_CLOSER = "a smaller output.history_interval shows what grew first, and when"
+"""Advice where the cause was lost: the state is beyond all bounds before one of them was looked at."""
 
 
 class Guard:
@@ -59,6 +62,7 @@ class Guard:
         require_finite(state, time)
         _require_at_most("speed [m/s]", np.linalg.norm(state["v"], axis=1), self.speed, time)
         _require_at_most("rho/rho0", 1.0 / (1.0 + state["j"]), self.compression, time)
+        _require_finite_row(row, time)
         self._check_mass(row, time)
         self._check_momentum(row, time)
         self._check_energy(row, time)
@@ -73,7 +77,8 @@ class Guard:
             state = particles.read("v", "C")
             strain = np.linalg.norm(state["C"], axis=(1, 2)) / LARGEST_INCREMENT
             rate = np.maximum(np.linalg.norm(state["v"], axis=1) / self.scene.dx, strain)
-            raise stop("time step [s]", dt, f"at least {self.shortest_step:.3g}", time, int(np.argmax(rate)))
+            particle, allowed = int(np.argmax(rate)), f"at least {self.shortest_step:.3g}"
+            raise stop("time step [s]", dt, allowed, time, particle, advice=LOOK_CLOSER)
 
     def _check_mass(self, row: Row, time: float) -> None:
         mass, expected = float(row["mass"]), float(self.start["mass"])
@@ -84,13 +89,15 @@ class Guard:
     def _check_momentum(self, row: Row, time: float) -> None:
         drift, allowed = momentum_drift(row, self.start), LARGEST_DRIFT * self.momentum
         if keeps_momentum(self.scene) and not drift <= allowed:
-            raise stop("change of total momentum [kg m/s]", drift, f"at most {allowed:.3g}", time)
+            advice = 'only round-off changes it, at any time step: use numerics.precision = "f64"'
+            raise stop("change of total momentum [kg m/s]", drift, f"at most {allowed:.3g}", time, advice=advice)
 
     def _check_energy(self, row: Row, time: float) -> None:
         growth = energy_growth(self.scene, row, self.start)
         if keeps_energy(self.scene) and not -1.0 <= growth <= ENERGY_GROWTH:
             allowed = f"between -1 and {ENERGY_GROWTH:g}"
-            raise stop("growth of total energy, as a share of all energies", growth, allowed, time)
+            quantity = "growth of total energy, as a share of all energies"
+            raise stop(quantity, growth, allowed, time, advice=SMALLER_STEPS)
 
 
 def require_finite(state: Arrays, time: float) -> None:
@@ -106,10 +113,17 @@ def require_finite(state: Arrays, time: float) -> None:
     for name, values in state.items():
         bad = ~np.isfinite(values).reshape(len(values), -1).all(axis=1)
         if bad.any():
-            raise stop(name, math.nan, "finite", time, int(np.argmax(bad)))
+            raise stop(name, math.nan, "finite", time, int(np.argmax(bad)), advice=LOOK_CLOSER)
+
+
+def _require_finite_row(row: Row, time: float) -> None:
+    """Accept only finite totals: those of finite particles may overflow, and no bound holds what is not a number."""
+    for name, value in row.items():
+        if not np.isfinite(value).all():
+            raise stop(name, math.nan, "finite", time, advice=LOOK_CLOSER)
 
 
 def _require_at_most(quantity: str, values: NDArray[np.float64], limit: float, time: float) -> None:
     particle = int(np.argmax(values))
     if values[particle] > limit:
-        raise stop(quantity, float(values[particle]), f"at most {limit:.4g}", time, particle)
+        raise stop(quantity, float(values[particle]), f"at most {limit:.4g}", time, particle, advice=SMALLER_STEPS)

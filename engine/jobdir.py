@@ -106,8 +106,12 @@ class JobDirectory:
 
     @property
     def snapshots(self) -> Path:
-        """Directory of particle snapshots, one file per time."""
+        """Directory of particle snapshots."""
         return self.path / "snapshots"
+
+    def snapshot(self, step: int) -> Path:
+        """Particles after a time step; sorted by name, snapshots are in order of time."""
+        return self.snapshots / f"{step:010d}.nc"
 
     def status(self) -> Status:
         """How the job stands now: a run whose process is gone reads `interrupted`, none at all `pending`.

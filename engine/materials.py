@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from engine.validation import Frozen, NonNegative, Positive
+from engine.validation import Frozen, NonNegative, Number, Positive
 
 
 class Tillotson(Frozen):
@@ -39,7 +39,7 @@ class Material(Frozen):
     melt_energy: Positive = 3.4e6
     damaged_friction: NonNegative = 0.839
     weibull_k: Positive = 4.0e35
-    weibull_m: Annotated[float, Field(ge=1.0, allow_inf_nan=False)] = 9.0
+    weibull_m: Annotated[Number, Field(ge=1.0, allow_inf_nan=False)] = 9.0
 
     @model_validator(mode="after")
     def _strengthens_with_pressure(self) -> Self:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from engine import PHYSICS_VERSION, backend
-from engine.checkpoint import load_checkpoint, save_checkpoint
+from engine.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
 from engine.errors import Fault, GuardFault
 from engine.guard import Guard
 from engine.history import History, Row
@@ -55,6 +55,7 @@ def run_job(directory: Path, options: Options) -> Status:
     with job.claim():
         status = job.status()
         if status.state == "done" and job.final.exists():
+            refuse_foreign(read_dataset(job.final), scene, job.final)
             return status
         backend.start(options.arch, options.threads)
         return Run(scene, job, options).to_end()
@@ -186,7 +187,7 @@ class Run:
 
     def _write_snapshot(self) -> None:
         self.job.snapshots.mkdir(exist_ok=True)
-        write_dataset(self.job.snapshots / f"{self.simulation.time:.3f}.nc", self._particles(np.float32))
+        write_dataset(self.job.snapshot(self.simulation.step), self._particles(np.float32))
 
     def _write_history(self) -> None:
         attributes = {"scene_hash": self.scene.hash(), "physics_version": PHYSICS_VERSION}

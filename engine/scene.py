@@ -3,24 +3,29 @@
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from engine.blocks import EDGE
-from engine.body import Body, Box
+from engine.body import MOST_PARTICLES, Body, Box
 from engine.errors import SceneError
 from engine.materials import Fracture, Material
 from engine.precision import Precision
-from engine.validation import Finite, Frozen, NonNegative, Positive, Vector, read_table, validate
+from engine.validation import Finite, Frozen, NonNegative, Number, OrOff, Positive, Vector, Whole, read_table, validate
 
-Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
+Fraction = Annotated[Number, Field(gt=0.0, le=1.0)]
+Seed = Annotated[Whole, Field(ge=0)]
 
 
 def _shape(body: Any) -> str:
     """Which shape of body plain keys describe."""
-    return "<box>" if isinstance(body, Box) or (isinstance(body, dict) and "lattice" in body) else "<sphere>"
+    is_box = isinstance(body, Box) or (isinstance(body, dict) and ("lattice" in body or "size" in body))
+    return Box.__name__ if is_box else Body.__name__
 
 
-AnyBody = Annotated[Annotated[Body, Tag("<sphere>")] | Annotated[Box, Tag("<box>")], Discriminator(_shape)]
+AnyBody = Annotated[
+    Annotated[Body, Tag(Body.__name__)] | Annotated[Box, Tag(Box.__name__)],
+    Discriminator(_shape),
+]
 
 
 class Gravity(Frozen):
@@ -33,7 +38,7 @@ class Gravity(Frozen):
 
     softening: Positive = 1.0
     interval: Positive = 20.0
-    opening: Annotated[float, Field(ge=0.0, le=1.0)] = 0.4
+    opening: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.4
 
 
 class Viscosity(Frozen):
@@ -60,7 +65,7 @@ class Wall(Frozen):
 
     point: Vector = (0.0, 0.0, 0.0)
     normal: Vector = (0.0, 0.0, 1.0)
-    friction: NonNegative | Literal["stick"] = 0.0
+    friction: Literal["stick"] | NonNegative = 0.0
 
     @model_validator(mode="after")
     def _has_a_direction(self) -> Self:
@@ -70,7 +75,7 @@ class Wall(Frozen):
 
 
 class Physics(Frozen):
-    """The parts of physics a scene uses; `null` leaves a part out, and it then costs nothing.
+    """The parts of physics a scene uses; `false` leaves a part out, and it then costs nothing.
 
     Pressure is always Tillotson's; without `energy` it follows the cold curve, and the ledger has no internal energy.
     `shear` adds the Hencky deviatoric stress, `strength` its radial return;
@@ -85,21 +90,23 @@ class Physics(Frozen):
     energy: bool = True
     shear: bool = True
     strength: bool = True
-    fracture: Fracture | None = Fracture()
-    gravity: Gravity | None = Gravity()
-    viscosity: Viscosity | None = None
-    uniform_gravity: Vector | None = None
+    fracture: OrOff[Fracture] = Fracture()
+    gravity: OrOff[Gravity] = Gravity()
+    viscosity: OrOff[Viscosity] = None
+    uniform_gravity: OrOff[Vector] = None
     walls: tuple[Wall, ...] = ()
     sound_speed: Fraction = 1.0
 
     @model_validator(mode="after")
     def _parts_fit_together(self) -> Self:
         if self.strength and not self.shear:
-            raise ValueError("'strength' limits shear stress: it needs shear = true")
+            raise ValueError(
+                "'strength' limits shear stress: it needs shear = true; or set strength and fracture = false"
+            )
         if self.fracture and not self.strength:
-            raise ValueError("'fracture' weakens strength: it needs strength = true")
+            raise ValueError("'fracture' weakens strength: it needs strength = true; or set fracture = false")
         if self.gravity and self.uniform_gravity:
-            raise ValueError("'uniform_gravity' takes the place of self-gravity: it needs gravity = null")
+            raise ValueError("'uniform_gravity' takes the place of self-gravity: it needs gravity = false")
         return self
 
 
@@ -120,32 +127,54 @@ class Output(Frozen):
     """What is written while the scene runs.
 
     history_interval: simulated time [s] between rows of the conserved quantities.
-    snapshot_interval: simulated time [s] between particle snapshots; `null` writes none.
+    snapshot_interval: simulated time [s] between particle snapshots; `false` writes none.
     """
 
     history_interval: Positive = 100.0
-    snapshot_interval: Positive | None = 1000.0
+    snapshot_interval: OrOff[Positive] = 1000.0
 
 
 class Scene(Frozen):
     """Everything a run depends on; the same scene gives the same results.
 
-    period: length [m] after which space repeats along each axis, a multiple of four cells; `null` is unbounded.
+    period: length [m] after which space repeats along each axis, a multiple of four cells; `false` is unbounded.
     """
 
+    physics: Physics = Physics()  # checked before bodies, whose start depends on it
     bodies: Annotated[tuple[AnyBody, ...], Field(min_length=1)]
-    period: tuple[Positive | None, Positive | None, Positive | None] = (None, None, None)
+    period: tuple[OrOff[Positive], OrOff[Positive], OrOff[Positive]] = (None, None, None)
     start_time: Finite = 0.0
     end_time: Finite
-    seed: Annotated[int, Field(ge=0)] = 1
-    physics: Physics = Physics()
+    seed: Seed = 1
     numerics: Numerics = Numerics()
     output: Output = Output()
+
+    @field_validator("bodies")
+    @classmethod
+    def _bear_their_own_weight(cls, bodies: tuple[AnyBody, ...], info: ValidationInfo) -> tuple[AnyBody, ...]:
+        physics = info.data.get("physics", Physics())
+        return tuple(body.balanced(physics.gravity is not None) if isinstance(body, Body) else body for body in bodies)
+
+    @model_validator(mode="after")
+    def _has_the_gravity_of_its_balance(self) -> Self:
+        if not self.physics.gravity and any(isinstance(body, Body) and body.hydrostatic for body in self.bodies):
+            raise ValueError(
+                "'hydrostatic' pressure needs self-gravity to hold it: leave it out of the body, or set it to false"
+            )
+        return self
 
     @model_validator(mode="after")
     def _ends_after_start(self) -> Self:
         if self.end_time <= self.start_time:
             raise ValueError(f"end_time {self.end_time} s is not after start_time {self.start_time} s")
+        return self
+
+    @model_validator(mode="after")
+    def _particles_can_be_counted(self) -> Self:
+        if self.particles > MOST_PARTICLES:
+            raise ValueError(
+                f"'bodies' hold {self.particles} particles in all; at most {MOST_PARTICLES} can be counted"
+            )
         return self
 
     @model_validator(mode="after")
@@ -155,7 +184,7 @@ class Scene(Frozen):
             if round(blocks) < 1 or abs(blocks - round(blocks)) > 1e-6:
                 raise ValueError(f"'period' {length} m is not a multiple of {EDGE} cells of {self.dx} m")
         if any(self.period) and self.physics.gravity:
-            raise ValueError("'period' repeats space without end: self-gravity needs it to be null")
+            raise ValueError("'period' repeats space without end: it needs physics.gravity = false")
         return self
 
     @property
@@ -198,12 +227,14 @@ def scene_in(directory: Path) -> Scene:
     """The scene of a job directory, `scene.json` or `scene.toml`.
 
     Raises:
-        SceneError: neither file is there, or it is not a scene.
+        SceneError: neither file is there, or both are, or it is not a scene.
     """
-    for name in ("scene.json", "scene.toml"):
-        if (directory / name).is_file():
-            return read_scene(directory / name)
-    raise SceneError(f"{directory}: holds no scene.json or scene.toml; write the scene to run there first")
+    found = [path for path in (directory / "scene.json", directory / "scene.toml") if path.is_file()]
+    if not found:
+        raise SceneError(f"{directory}: holds no scene.json or scene.toml; write the scene to run there first")
+    if len(found) > 1:
+        raise SceneError(f"{directory}: holds scene.json and scene.toml; keep the one to run")
+    return read_scene(found[0])
 
 
 def scene_at(source: Path) -> Scene:

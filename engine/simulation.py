@@ -11,7 +11,7 @@ from engine.backend import require_precision
 from engine.blocks import EDGE, HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.body import Solid
 from engine.clock import FAULT_NONE, Clock
-from engine.errors import stop
+from engine.errors import SMALLER_STEPS, stop
 from engine.gravity import SelfGravity
 from engine.initial import initial_state
 from engine.ledger import Totals, elastic_energy, half_step_work, totals
@@ -143,14 +143,14 @@ class Simulation:
         if self.clock.fault[None] != FAULT_NONE:
             p = int(self.clock.fault_particle[None])
             j = float(self.particles.read("j")["j"][p])
-            raise stop("det F", 1.0 + j, "above 0", self.time, p)
+            raise stop("det F", 1.0 + j, "above 0", self.time, p, advice=SMALLER_STEPS)
 
     def _require_in_range(self, x: NDArray[np.float64]) -> None:
         far = out_of_range(x, self.scene.dx)
         if far.any():
             p, largest = int(np.argmax(far)), EDGE * HALF_RANGE * self.scene.dx
             distance, advice = float(np.abs(x[p]).max()), "end the run earlier, or make cells larger"
-            raise stop("coordinate [m]", distance, f"below {largest:.3g}", self.time, p, advice)
+            raise stop("coordinate [m]", distance, f"below {largest:.3g}", self.time, p, advice=advice)
 
     def _first_rate(self, state: Arrays) -> float:
         """Inverse time step [1/s] that bodies at rest density and full speed demand, in a state to begin with."""

@@ -1,22 +1,35 @@
-"""Strict, frozen input models and errors that name the file, the key and the way out."""
+"""Strict, frozen input models, and the kinds of numbers they hold."""
 
-import difflib
 import hashlib
 import json
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from engine.errors import SceneError
+from engine.mistakes import explain
 
+
+def _no_switch(value: Any) -> Any:
+    if isinstance(value, bool):
+        raise ValueError("Input should be a number, not true or false")
+    return value
+
+
+Number = Annotated[float, BeforeValidator(_no_switch)]
+Whole = Annotated[int, BeforeValidator(_no_switch)]
 # -0.0 + 0.0 is 0.0: one text for one meaning
-Finite = Annotated[float, Field(allow_inf_nan=False), AfterValidator(lambda value: value + 0.0)]
+Finite = Annotated[Number, Field(allow_inf_nan=False), AfterValidator(lambda value: value + 0.0)]
 Positive = Annotated[Finite, Field(gt=0.0)]
 NonNegative = Annotated[Finite, Field(ge=0.0)]
 Vector = tuple[Finite, Finite, Finite]
 Model = TypeVar("Model", bound=BaseModel)
+Kind = TypeVar("Kind")
+# TOML has no null
+OrOff = Annotated[Kind | None, BeforeValidator(lambda value: None if value is False else value)]
+"""A part that `false` leaves out."""
 
 
 class Frozen(BaseModel):
@@ -65,40 +78,4 @@ def validate(model: type[Model], table: dict[str, Any], source: str) -> Model:
     try:
         return model.model_validate(table)
     except ValidationError as error:
-        lines = [f"{source}: {_explain(model, issue)}" for issue in error.errors()]
-        raise SceneError("\n".join(lines)) from error
-
-
-def _explain(model: type[BaseModel], issue: Any) -> str:
-    # a tag in angle brackets tells which model was tried; it is no part of the input
-    location = [str(part) for part in issue["loc"] if not str(part).startswith("<")]
-    key = ".".join(location) or "input"
-    if issue["type"] == "extra_forbidden":
-        return f"unknown key '{key}'{suggestion(location[-1], _known_keys(model, issue['loc'][:-1]))}"
-    if issue["type"] == "missing":
-        return f"missing key '{key}'"
-    message = issue["msg"].removeprefix("Value error, ")
-    given = "" if isinstance(issue["input"], dict) else f" (given {issue['input']!r})"
-    return f"'{key}': {message}{given}"
-
-
-def suggestion(name: str, known: list[str]) -> str:
-    """The nearest known name, or all of them, as the tail of an error message."""
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    return f": did you mean '{near[0]}'?" if near else f"; known keys: {', '.join(known)}"
-
-
-def _known_keys(model: type[BaseModel], location: tuple[Any, ...]) -> list[str]:
-    """Field names of the model that `location` leads to from `model`."""
-    for part in location:
-        if isinstance(part, str) and part in model.model_fields:
-            model = _nested_model(model.model_fields[part].annotation) or model
-    return list(model.model_fields)
-
-
-def _nested_model(annotation: Any) -> type[BaseModel] | None:
-    """The input model inside `Model`, `Model | None`, or `tuple[Model, ...]`."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    inner = (_nested_model(argument) for argument in getattr(annotation, "__args__", ()))
-    return next((model for model in inner if model), None)
+        raise SceneError("\n".join(f"{source}: {line}" for line in explain(model, table, error))) from error

@@ -15,6 +15,15 @@ BAD_STUDIES = {
         ["numerics.clf", "did you mean 'cfl'"],
     ),
     "misspelt axis": (HEAD + "[axes]\nvelocty = [100]\nangle = [5]\n", ["axes.velocty", "did you mean 'velocity'"]),
+    "setting outside of its table": (
+        HEAD + "cfl = 0.1\n" + GRID,
+        ["unknown key 'cfl'", "did you mean 'collision.numerics.cfl'"],
+    ),
+    "axis without its table": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\ncfl = [0.1]\n",
+        ["unknown key 'axes.cfl'", "did you mean 'numerics.cfl'"],
+    ),
+    "switch as velocity": (HEAD + "[axes]\nvelocity = [true]\nangle = [5]\n", ["'velocity'", "not true or false"]),
     "negative radius": (HEAD + "[collision]\nradius = -5.0\n" + GRID, ["'radius'", "greater than 0", "-5.0"]),
     "steep angle": (HEAD + "[axes]\nvelocity = [100]\nangle = [95]\n", ["'angle'", "90", "95"]),
     "negative angle": (HEAD + "[axes]\nvelocity = [100]\nangle = [-1]\n", ["'angle'", "0", "-1"]),
@@ -41,7 +50,8 @@ BAD_STUDIES = {
         ["velocity 100.0", "same simulation"],
     ),
     "axis without effect": (
-        HEAD + "[collision]\nfriction = 0.5\n[collision.fracture]\nflaws = 'covered'\n"
+        HEAD + "[collision]\nfriction = 0.5\n[collision.fracture]\n"
+        "flaws = 'covered'\nstrain = 'young'\ngrowth_speed = 0.4\nper_flaw = true\n"
         "[axes]\nvelocity = [100]\nangle = [5]\nparameter_set = ['talk', 'sugiura2018']\n",
         ["talk", "sugiura2018", "same simulation"],
     ),
@@ -108,6 +118,10 @@ def test_unknown_study(command, runs):
     assert result.code == 2
     assert "did you mean 'quick'" in result.err
     assert not runs.exists()
+
+
+def test_a_study_unlike_any_other_names_those_there_are(command):
+    assert "; known studies: accuracy, quick, sugiura2018, talk2025" in command("run", "zzzz").err
 
 
 def test_directory_as_study(command, tmp_path):

@@ -81,7 +81,26 @@ def test_what_is_not_finite_is_named(name, bad):
     guard, state = guard_of(collision())
     fault = stopped(guard, changed(state, name, bad))
     assert (fault.quantity, fault.particle, fault.value, fault.allowed, fault.time) == (name, 7, None, "finite", 5.0)
-    assert f"{name} of particle 7 is not finite at t = 5 s" in str(fault)
+    assert f"{name} of particle 7 is not finite at t = 5 s" in str(fault) and "history_interval" in fault.advice
+
+
+@pytest.mark.parametrize("name", ["momentum", "total_energy", "gravitational_energy"])
+def test_a_total_that_is_not_finite_is_named_before_any_bound_of_it(name):
+    guard, state = guard_of(collision())
+    fault = stopped(guard, state, {**row_of(state), name: np.array(np.inf)})
+    assert (fault.quantity, fault.particle, fault.value, fault.allowed) == (name, None, None, "finite")
+    assert "history_interval" in fault.advice
+
+
+def test_smaller_steps_are_advised_only_where_they_can_help():
+    guard, state = guard_of(collision())
+    row = row_of(state)
+    won = {**row, "total_energy": 2.0 * row["total_energy"]}
+    pushed = {**row, "momentum": row["momentum"] + 1e30}
+    assert "cfl" in stopped(guard, changed(state, "v", [1e30, 0.0, 0.0]), row).advice
+    assert "cfl" in stopped(guard, state, won).advice
+    assert "cfl" not in stopped(guard, state, pushed).advice and "f64" in stopped(guard, state, pushed).advice
+    assert "cfl" not in stopped(guard, state, {**row, "mass": 2.0 * row["mass"]}).advice
 
 
 def test_a_speed_beyond_ten_times_the_scenes_is_named():
@@ -194,10 +213,11 @@ def test_a_collapsed_time_step_names_the_wildest_particle(taichi, dt):
     with pytest.raises(GuardFault) as caught:
         guard.check_time_step(dt, 5.0, particles)
     assert (caught.value.fault.quantity, caught.value.fault.particle) == ("time step [s]", 7)
+    assert "cfl" not in caught.value.fault.advice
 
 
 def test_a_status_keeps_its_fault_in_parts_and_campaigns_show_it(tmp_path: Path) -> None:
-    fault = stop("speed [m/s]", np.inf, "at most 3", 1.5, 4).fault
+    fault = stop("speed [m/s]", np.inf, "at most 3", 1.5, 4, advice="slow down").fault
     JobDirectory(tmp_path).write_status(Status(state="failed", reason=str(fault), fault=fault))
     assert JobDirectory(tmp_path).status().fault == fault
     written = json.loads((tmp_path / "status.json").read_text())["fault"]

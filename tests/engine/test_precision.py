@@ -9,7 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from engine.__main__ import BAD_INPUT, application
 from engine.backend import require_precision
 from engine.errors import SceneError
 from engine.precision import VARIABLE, chosen
@@ -81,3 +83,13 @@ def test_an_unknown_precision_is_refused(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setenv(VARIABLE, "f16")
     with pytest.raises(SceneError, match=r"'f16' is no precision; allowed: f64, f32"):
         chosen()
+
+
+@pytest.mark.parametrize("command", [["verify", "slop"], ["accuracy", ".", "slop"], ["stability", "."]])
+@pytest.mark.parametrize("left_behind", ["f32", "f16"])
+def test_commands_without_a_scene_of_their_own_compute_in_double_precision(
+    command: list[str], left_behind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(VARIABLE, left_behind)
+    assert CliRunner().invoke(application, command).exit_code == BAD_INPUT
+    assert chosen() == "f64"

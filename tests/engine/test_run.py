@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from analysis.particles import snapshots
+from engine import PHYSICS_VERSION
 from engine.jobdir import JobDirectory
 from engine.storage import read_dataset, write_dataset
 from tests.engine.jobs import (
@@ -87,6 +89,16 @@ def test_snapshots_do_not_change_the_run_between_them(tmp_path: Path, reference:
     assert len(list((directory / "snapshots").glob("*.nc"))) >= 4
 
 
+def test_every_snapshot_of_a_short_run_has_its_own_file(tmp_path: Path) -> None:
+    pebble = {"radius": 1.0, "particles": 60}
+    scene = {"bodies": [pebble], "end_time": 8e-4, "output": {"snapshot_interval": 1e-4}}
+    (tmp_path / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
+    assert run_engine(tmp_path).returncode == 0
+    in_order_of_names = [read_dataset(path).attrs["time"] for path in sorted((tmp_path / "snapshots").iterdir())]
+    assert len(in_order_of_names) >= 4 and in_order_of_names == sorted(set(in_order_of_names))
+    assert [time for time, _ in snapshots(JobDirectory(tmp_path))] == in_order_of_names
+
+
 def test_a_finished_job_is_left_alone(reference: Path) -> None:
     files = [reference / name for name in ("final.nc", "history.nc", "status.json", "provenance.json")]
     before = [(path.stat().st_mtime_ns, path.read_bytes()) for path in files]
@@ -123,6 +135,27 @@ def test_a_checkpoint_of_another_scene_is_refused(tmp_path: Path) -> None:
     result = run_engine(directory)
     assert result.returncode == 2
     assert "another scene" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"velocity": 100.0}, "final.nc: belongs to another scene; run the changed scene in a new directory"),
+        ({}, f"final.nc: written with physics version {PHYSICS_VERSION + 1}, this is version {PHYSICS_VERSION}"),
+    ],
+)
+def test_a_finished_job_of_another_scene_or_version_is_refused(
+    tmp_path: Path, reference: Path, changes: dict[str, float], told: str
+) -> None:
+    directory = write_job(tmp_path / "job", **changes)
+    for name in ("final.nc", "history.nc", "status.json"):
+        shutil.copy(reference / name, directory / name)
+    if not changes:
+        other = {"physics_version": PHYSICS_VERSION + 1}
+        write_dataset(directory / "final.nc", read_dataset(directory / "final.nc").assign_attrs(other))
+    result = run_engine(directory)
+    assert result.returncode == 2
+    assert told in result.stderr
 
 
 @pytest.mark.parametrize(

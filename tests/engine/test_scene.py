@@ -11,6 +11,7 @@ from engine.scene import Body, Scene, read_scene, scene_in
 from engine.validation import validate
 
 BODY: dict[str, Any] = {"radius": 50e3, "particles": 1000}
+BOX: dict[str, Any] = {"size": [1.0, 1.0, 1.0], "lattice": [2, 2, 2]}
 SCENE: dict[str, Any] = {"bodies": [BODY], "end_time": 10.0}
 
 
@@ -41,8 +42,20 @@ BAD = {
     "ends before it starts": ({"end_time": -5.0}, "end_time -5.0", "start_time 0.0"),
     "starts at infinity": ({"start_time": float("-inf")}, "'start_time'", "finite", "-inf"),
     "no end": ({"end_time": None}, "'end_time'", "None"),
-    "strength without shear": ({"physics": {"shear": False, "fracture": None}}, "'strength'", "shear = true"),
+    "strength without shear": (
+        {"physics": {"shear": False, "fracture": None}},
+        "'strength'",
+        "shear = true",
+        "fracture = false",
+    ),
     "fracture without strength": ({"physics": {"strength": False}}, "'fracture'", "strength = true"),
+    "pressure that nothing holds": (
+        {"bodies": [{**BODY, "hydrostatic": True}], "physics": {"gravity": None}},
+        "'hydrostatic'",
+        "needs self-gravity",
+    ),
+    "two gravities": ({"physics": {"uniform_gravity": [0, 0, -1]}}, "'uniform_gravity'", "gravity = false"),
+    "yes for a table": ({"physics": {"gravity": True}}, "'physics.gravity'", "a table of keys", "True"),
     "misspelt physics": ({"physics": {"gravty": None}}, "'physics.gravty'", "did you mean 'gravity'"),
     "misspelt gravity": ({"physics": {"gravity": {"softning": 1}}}, "softning", "did you mean 'softening'"),
     "no interval": ({"physics": {"gravity": {"interval": 0}}}, "'physics.gravity.interval'", "greater than 0"),
@@ -52,7 +65,21 @@ BAD = {
     "empty cells": ({"numerics": {"particles_per_cell": 0.0}}, "'numerics.particles_per_cell'", "0.0"),
     "no steps": ({"numerics": {"cfl": 0.0}}, "'numerics.cfl'", "0.0"),
     "word for a flag": ({"physics": {"shear": "perhaps"}}, "'physics.shear'", "boolean", "'perhaps'"),
-    "key without relatives": ({"zzzz": 1}, "unknown key 'zzzz'", "known keys: bodies"),
+    "switch for a number": (with_body(radius=True), "'bodies.1.radius'", "a number, not true or false", "True"),
+    "switch for a count": (with_body(particles=True), "'bodies.1.particles'", "a number, not true or false"),
+    "switch in a vector": (with_body(position=[0.0, False, 0.0]), "'bodies.1.position.1'", "not true or false"),
+    "more particles than indices": (with_body(particles=10**10), "'bodies.1.particles'", "less than", "1073741824"),
+    "far more particles": (with_body(particles=1e24), "'bodies.1.particles'", "too large", "1e+24"),
+    "too many particles in all": (with_body(particles=2**30), "'bodies' hold 1073742824 particles in all", "at most"),
+    "no body": ({"bodies": [3]}, "'bodies.0'", "a table of keys", "3"),
+    "sphere and box": ({"bodies": [{**BOX, "radius": 1.0}]}, "unknown key 'bodies.0.radius'", "known keys", "lattice"),
+    "box without lattice": ({"bodies": [{"size": [1.0, 1.0, 1.0]}]}, "missing key 'bodies.0.lattice'"),
+    "box without size": ({"bodies": [{"lattice": [1, 1, 1]}]}, "missing key 'bodies.0.size'"),
+    "misspelt friction": ({"physics": {"walls": [{"friction": "stik"}]}}, "walls.0.friction'", "'stick' or", "number"),
+    "word for a table": ({"numerics": "f32"}, "'numerics'", "a table of keys", "'f32'"),
+    "key of a table inside": ({"cfl": 0.1}, "unknown key 'cfl'", "did you mean 'numerics.cfl'"),
+    "part of physics outside": ({"gravity": {}}, "unknown key 'gravity'", "did you mean 'physics.gravity'"),
+    "key without relatives": ({"zzzz": 1}, "unknown key 'zzzz'", "known keys: physics, bodies"),
 }
 
 
@@ -89,11 +116,41 @@ def test_a_directory_without_a_scene_says_what_to_write(tmp_path: Path):
         scene_in(tmp_path)
 
 
+def test_a_directory_with_two_scenes_is_refused(tmp_path: Path):
+    for name in ("scene.json", "scene.toml"):
+        (tmp_path / name).write_text("")
+    with pytest.raises(SceneError, match=r"holds scene\.json and scene\.toml"):
+        scene_in(tmp_path)
+
+
 def test_a_scene_survives_being_written_and_read(tmp_path: Path):
     one = scene(physics={"viscosity": {"shear": 1e5}}, bodies=[BODY, {**BODY, "spin": [0, 0, 1e-4]}])
     (tmp_path / "scene.json").write_text(one.canonical())
     assert scene_in(tmp_path) == one
     assert json.loads(one.canonical())["bodies"][1]["spin"] == [0.0, 0.0, 1e-4]
+
+
+def test_false_leaves_a_part_out_as_null_does_since_toml_has_no_null(tmp_path: Path):
+    path = tmp_path / "scene.toml"
+    path.write_text("""
+        end_time = 10.0
+        period = [4e5, false, false]
+        bodies = [{size = [1e5, 1e5, 1e5], lattice = [4, 4, 4]}]
+        [numerics]
+        particles_per_cell = 1
+        [physics]
+        fracture = false
+        gravity = false
+        viscosity = false
+        uniform_gravity = [0.0, 0.0, -1.0]
+        [output]
+        snapshot_interval = false
+    """)
+    parts = {"fracture": None, "gravity": None, "viscosity": None, "uniform_gravity": [0.0, 0.0, -1.0]}
+    box = {"size": [1e5, 1e5, 1e5], "lattice": [4, 4, 4]}
+    same = {"period": [4e5, None, None], "numerics": {"particles_per_cell": 1}, "output": {"snapshot_interval": None}}
+    assert read_scene(path) == scene(bodies=[box], physics=parts, **same)
+    assert read_scene(path).physics.gravity is None
 
 
 def test_equal_scenes_have_equal_hashes_and_others_not():
@@ -113,6 +170,15 @@ def test_spacing_is_that_of_the_coarsest_body():
     two = Scene(bodies=(fine, coarse), end_time=1.0)
     assert two.spacing == pytest.approx((4.0 / 3.0 * np.pi * 1e9 / 10) ** (1 / 3))
     assert scene(numerics={"particles_per_cell": 8.0}).dx == pytest.approx(2.0 * scene().spacing)
+
+
+@pytest.mark.parametrize("pull", [None, (0.0, 0.0, -1.0)])
+def test_without_self_gravity_a_body_starts_without_pressure(pull: tuple[float, float, float] | None):
+    floating = scene(physics={"gravity": None, "uniform_gravity": pull})
+    assert floating.bodies[0].hydrostatic is False and not initial_state(floating)["tau"].any()
+    assert scene().bodies[0].hydrostatic is True and initial_state(scene())["tau"].any()
+    assert scene().hash() == scene(bodies=[{**BODY, "hydrostatic": True}]).hash()
+    assert scene(bodies=[{**BODY, "hydrostatic": False}]).bodies[0].hydrostatic is False
 
 
 def test_a_spinning_body_starts_as_a_rigid_rotation_in_hydrostatic_balance():

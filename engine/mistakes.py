@@ -1,0 +1,115 @@
+"""What is wrong with an input, in lines that name the key, what was given and what is allowed."""
+
+import difflib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+Location = tuple[int | str, ...]
+
+PLAIN = {
+    "model_type": "Input should be a table of keys",
+    "dict_type": "Input should be a table of keys",
+    "tuple_type": "Input should be a list",
+    "int_parsing_size": "Input is too large",
+}
+"""Texts for issues that pydantic explains in terms of Python."""
+
+
+@dataclass(frozen=True)
+class KeysOf:
+    """Marks a plain table whose keys are those of a model, checked later."""
+
+    model: type[BaseModel]
+
+
+def suggestion(name: str, known: Sequence[str], what: str = "keys", below: Sequence[str] = ()) -> str:
+    """The known name that was meant, or all of them, as the tail of an error message.
+
+    Args:
+        name: what was given.
+        known: what it could have been.
+        what: what these are.
+        below: dotted keys of the tables among them, one of which may end in `name`.
+    """
+    same = [key for key in (*known, *below) if key.rpartition(".")[2] == name]
+    near = sorted(same, key=len) or difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    return f": did you mean '{near[0]}'?" if near else f"; known {what}: {', '.join(known)}"
+
+
+def explain(model: type[BaseModel], table: dict[str, Any], error: ValidationError) -> Iterator[str]:
+    """A line for every wrong place; what holds a wrong value is not wrong itself."""
+    places: dict[Location, list[Any]] = {}
+    for issue in error.errors():
+        places.setdefault(_place(table, issue), []).append(issue)
+    for place, issues in places.items():
+        if not any(other[: len(place)] == place != other for other in places):
+            yield _line(model, place, issues)
+
+
+def _place(table: Any, issue: Any) -> Location:
+    """The keys that lead to an issue: its location without the names of the models that were tried."""
+    place: Location = ()
+    for part in issue["loc"]:
+        keys = range(len(table)) if isinstance(table, list | tuple) else table
+        if isinstance(keys, dict | range) and part in keys:
+            place, table = (*place, part), table[part]
+    return (*place, issue["loc"][-1]) if issue["type"] == "missing" else place
+
+
+def _line(model: type[BaseModel], place: Location, issues: list[Any]) -> str:
+    key, first = ".".join(str(part) for part in place), issues[0]
+    if first["type"] == "extra_forbidden":
+        nearby = _model_at(model, first["loc"][:-1])
+        return f"unknown key '{key}'{suggestion(str(place[-1]), list(nearby.model_fields), below=_keys_below(nearby))}"
+    if first["type"] == "missing":
+        return f"missing key '{key}'"
+    given = "" if isinstance(first["input"], dict) else f" (given {first['input']!r})"
+    return (f"'{key}': " if key else "") + _allowed(issues) + given
+
+
+def _allowed(issues: list[Any]) -> str:
+    """What a value may be: one of several kinds, when it was tried as each of them."""
+    first, *others = (PLAIN.get(issue["type"], issue["msg"]).removeprefix("Value error, ") for issue in issues)
+    return " or ".join([first, *(other.removeprefix("Input should be ") for other in others)])
+
+
+def _model_at(model: type[BaseModel], location: Location) -> type[BaseModel]:
+    """The input model that `location` leads to from `model`."""
+    choices = [model]
+    for part in location:
+        inside = [inner for choice in choices for inner in _models_of(choice, part)]
+        choices = [choice for choice in choices if choice.__name__ == part] or inside or choices
+    return choices[0]
+
+
+def _models_of(model: type[BaseModel], name: int | str) -> list[type[BaseModel]]:
+    """The input models that a field may hold."""
+    field = model.model_fields.get(str(name))
+    return _models_in(field.annotation) if field else []
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    """The input models inside `Model`, `Model | None`, or `tuple[Model, ...]`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for argument in getattr(annotation, "__args__", ()) for model in _models_in(argument)]
+
+
+def _keys_below(model: type[BaseModel]) -> list[str]:
+    """Dotted keys of the tables that `model` holds, at any depth."""
+    return [
+        f"{name}.{key}"
+        for name, field in model.model_fields.items()
+        for table in _tables_in(field)
+        for key in (*table.model_fields, *_keys_below(table))
+    ]
+
+
+def _tables_in(field: FieldInfo) -> list[type[BaseModel]]:
+    """The input models that a field may hold as a table, not those in lists."""
+    marked = [mark.model for mark in field.metadata if isinstance(mark, KeysOf)]
+    return marked if get_origin(field.annotation) is tuple else marked + _models_in(field.annotation)
