@@ -184,7 +184,7 @@ class Scene(Frozen):
             if round(blocks) < 1 or abs(blocks - round(blocks)) > 1e-6:
                 raise ValueError(f"'period' {length} m is not a multiple of {EDGE} cells of {self.dx} m")
         if any(self.period) and self.physics.gravity:
-            raise ValueError("'period' repeats space without end: it needs physics.gravity = false")
+            raise ValueError("'period' repeats space without end: it needs self-gravity off, physics.gravity = false")
         return self
 
     @property
