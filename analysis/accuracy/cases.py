@@ -8,6 +8,9 @@ from engine.errors import SceneError
 BASE = "base"
 """Name of the case that all others are compared with."""
 
+SEVERAL = "several"
+"""Knob of a case that differs from the base in more than one setting."""
+
 
 @dataclass(frozen=True)
 class Case:
@@ -43,7 +46,7 @@ def cases(campaign: Campaign) -> dict[str, Case]:
 
 def _case(table: dict[str, Scalar], base: dict[str, Scalar]) -> Case:
     keys = [key for key in table | base if key != "seed" and _value(table, key) != _value(base, key)]
-    knob = keys[0] if len(keys) == 1 else "several" if keys else NONE
+    knob = keys[0] if len(keys) == 1 else SEVERAL if keys else NONE
     return Case(knob, table.get(knob, NONE), int(table["particles"]))
 
 

@@ -10,10 +10,15 @@ from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
+from analysis.accuracy.cases import SEVERAL
 from analysis.accuracy.measure import MEASURED
+from analysis.campaign import NONE
 from analysis.figures.style import GREY, MARKERS
 from analysis.variables import OUTCOMES
 from engine.verification.pareto import pareto
+
+HIDDEN = 0.05
+"""Relative difference of errors below which two cases lie on top of each other."""
 
 TITLES = {"mass_ratio": "$M_\\mathrm{lr}\\,/\\,M_\\mathrm{target}$", "b_over_a": "$b/a$", "c_over_a": "$c/a$"}
 
@@ -25,6 +30,7 @@ def error_against_cost(found: xr.Dataset) -> Any:
     hollow.
     """
     figure, panels = plt.subplots(2, 2, figsize=(8.2, 6.0), layout="constrained", sharex=True)
+    found = found.assign_coords(knob=found["case"].where(found["knob"] == SEVERAL, found["knob"]))
     knobs = list(dict.fromkeys(str(knob) for knob in found["knob"].values))
     looks = dict(zip(knobs, zip(plt.get_cmap("tab10").colors, cycle(MARKERS), strict=False), strict=False))
     for axes, name in zip(panels.flat, MEASURED, strict=True):
@@ -47,7 +53,7 @@ def errors(found: xr.Dataset, name: str) -> pd.DataFrame:
 
 def _panel(axes: Any, runs: pd.DataFrame, looks: dict[str, Any]) -> None:
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=20))
         axis.set_major_formatter(FormatStrFormatter("%g"))
         axis.set_minor_formatter(NullFormatter())
     front = pareto(runs)
@@ -56,13 +62,23 @@ def _panel(axes: Any, runs: pd.DataFrame, looks: dict[str, Any]) -> None:
         colour, marker = looks[run["knob"]]
         face = colour if run["resolved"] else "white"
         axes.plot(run["cpu_time"], run["error"], marker=marker, color=colour, markerfacecolor=face, linestyle="none")
-        label = "base" if run["knob"] == "none" else run["value"].removesuffix(".0")
-        axes.annotate(label, (run["cpu_time"], run["error"]), (3, 3), textcoords="offset points", fontsize=6.5)
+        if label := _label(run, runs):
+            axes.annotate(label, (run["cpu_time"], run["error"]), (3, 3), textcoords="offset points", fontsize=6.5)
+
+
+def _label(run: pd.Series, runs: pd.DataFrame) -> str:
+    """Value of the setting that is turned; nothing where it makes no visible difference to the base."""
+    if run["knob"] == NONE:
+        return "base"
+    base = runs.loc[runs["knob"] == NONE, "error"]
+    if not base.empty and abs(np.log(run["error"] / base.iloc[0])) < HIDDEN:
+        return ""
+    return "" if run["value"] == NONE else str(run["value"]).removesuffix(".0")
 
 
 def _legend(looks: dict[str, Any]) -> list[Line2D]:
     handles = [
-        Line2D([], [], color=colour, marker=marker, linestyle="none", label="base" if knob == "none" else knob)
+        Line2D([], [], color=colour, marker=marker, linestyle="none", label="base" if knob == NONE else knob)
         for knob, (colour, marker) in looks.items()
     ]
     hollow = Line2D([], [], color=GREY, marker="o", markerfacecolor="white", linestyle="none", label="not resolved")
