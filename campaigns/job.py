@@ -22,6 +22,8 @@ _TAIL = 2000
 """Bytes of error output that are searched for the last line."""
 
 _running: dict[Path, subprocess.Popen[bytes]] = {}
+_signalled: set[tuple[subprocess.Popen[bytes], int]] = set()
+"""Who got which signal: a second one might end an engine that writes its checkpoint after the first."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +56,13 @@ def run_job(directory: Path, threads: int, arch: str, retry_failed: bool) -> Out
 
 
 def signal_jobs(directories: list[Path], number: int) -> int:
-    """Send a signal to the engines of these jobs on this worker; number 0 only counts them."""
+    """Send a signal, once, to each engine of these jobs on this worker; how many of them still run."""
     processes = [process for directory, process in list(_running.items()) if directory in directories]
     alive = [process for process in processes if process.poll() is None]
     for process in alive:
-        process.send_signal(number)
+        if (process, number) not in _signalled:
+            _signalled.add((process, number))
+            process.send_signal(number)
     return len(alive)
 
 

@@ -19,6 +19,8 @@ PERIOD = 1.0
 """Time [s] between two looks at the disk."""
 STOP_PATIENCE = 30.0
 """Time [s] engines get to write their checkpoint before they are killed."""
+QUIET_LOOKS = 3
+"""Looks without any engine before all have ended: a worker may not know yet that its next job is cancelled."""
 
 
 @dataclass
@@ -89,13 +91,14 @@ class Run:
         return replace(job, status=replace(job.status, reason=outcome.reason))
 
     def _stop(self) -> None:
-        """End the engines so that each can write its checkpoint."""
+        """End the engines so that each can write its checkpoint, also those that workers begin meanwhile."""
         print("stopping: the jobs that run write their checkpoints", file=sys.stderr)
         paths = list(self._futures)
         self.client.cancel(list(self._futures.values()))
-        self.client.run(signal_jobs, paths, signal.SIGTERM)
         deadline = time.monotonic() + STOP_PATIENCE
-        while any(self.client.run(signal_jobs, paths, 0).values()):
+        quiet = 0
+        while quiet < QUIET_LOOKS:
+            quiet = 0 if any(self.client.run(signal_jobs, paths, signal.SIGTERM).values()) else quiet + 1
             time.sleep(0.2)
             if time.monotonic() > deadline:
                 self.client.run(signal_jobs, paths, signal.SIGKILL)
