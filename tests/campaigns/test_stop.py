@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import psutil
@@ -25,6 +26,8 @@ def start(study: Path, runs: Path, verb: str = "run", seconds: float = 60.0) -> 
         text=True,
         env=os.environ | {"FAKE_SECONDS": str(seconds), "PYTHONPATH": str(ROOT)},
         start_new_session=True,
+        # a shell in the background lets its children ignore it, and they theirs
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
 
 
