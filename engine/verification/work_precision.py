@@ -36,8 +36,9 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
 
 def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:
     axes.set(xscale="log", yscale="log")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    for axis, column in ((axes.xaxis, "cpu_time"), (axes.yaxis, "error")):
+        several_decades = runs[column].max() > 1e3 * runs[column].min()
+        axis.set_major_locator(LogLocator(subs=(1.0,) if several_decades else (1.0, 2.0, 5.0), numticks=8))
         axis.set_major_formatter(FormatStrFormatter("%g"))
         axis.set_minor_formatter(NullFormatter())
     axes.tick_params(labelsize=7)
