@@ -18,6 +18,7 @@ from taichi.lang.util import to_numpy_type
 
 from engine.errors import SceneError
 from engine.precision import VARIABLE, chosen
+from engine.translation import word_places_once
 
 PRECISION = chosen()
 """Name of the precision of this process."""
@@ -58,6 +59,7 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
     """
     if arch == "cuda" and not ti.lang.misc.is_arch_supported(ti.cuda):
         raise SceneError("--arch cuda: Taichi finds no CUDA device here; use --arch cpu")
+    word_places_once()
     with redirect_stdout(StringIO()):  # ti.init prints a banner that no option silences
         ti.init(
             arch={"cpu": ti.cpu, "cuda": ti.cuda}[arch],
