@@ -54,8 +54,8 @@ accuracy: $(INSTALLED) ## turn every numerical setting of scenes and of a collis
 stability: $(INSTALLED) ## run stiff and extreme cases; each is stable, or stopped with a reason
 	@$(RUN) engine stability '$(RUNS)/stability' $(if $(WORKERS),--workers $(WORKERS))
 
-test: $(INSTALLED) ## run the fast tests
-	$(RUN) pytest
+test: $(INSTALLED) ## run the fast tests, a file at a time on every core
+	$(RUN) pytest -n logical --maxprocesses 8 --dist loadfile
 
 test-slow: $(INSTALLED) ## run the tests that take minutes
 	$(RUN) pytest -m slow

@@ -37,6 +37,7 @@ class Campaign(BaseModel):
 
     name: str
     physics_version: int
+    study: dict[str, Any] = {}
     dims: tuple[str, ...]
     coords: dict[str, tuple[Any, ...]]
     jobs: tuple[Job, ...]
@@ -54,6 +55,11 @@ class Campaign(BaseModel):
     def cell(self, job: Job) -> tuple[int, ...]:
         """Position of a job along each dimension."""
         return tuple(self.coords[dim].index(job.index[dim]) for dim in self.dims)
+
+    @property
+    def description(self) -> str:
+        """What the study says of itself."""
+        return str(self.study.get("description", ""))
 
     @property
     def has_error_bars(self) -> bool:

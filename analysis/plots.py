@@ -11,22 +11,30 @@ from analysis.figures.conservation import conservation
 from analysis.figures.gallery import gallery
 from analysis.figures.maps import maps
 from analysis.figures.style import save
+from analysis.report import write_report
 from analysis.tables import write_shape_table
 
 
 def plots(campaign_directory: Path) -> tuple[xr.Dataset, list[Path]]:
-    """Collect a campaign and write shape_table.csv and figures/; returns the results and the files written.
+    """Collect a campaign; write shape_table.csv, figures/ and report.html; returns the results and the files written.
 
     Raises:
         SceneError: there is no campaign.json, or it does not describe a campaign.
     """
-    results = collect(campaign_directory)
-    directories = {job.id: campaign_directory / job.directory for job in read_campaign(campaign_directory).jobs}
+    results, campaign = collect(campaign_directory), read_campaign(campaign_directory)
+    directories = {job.id: campaign_directory / job.directory for job in campaign.jobs}
     figures = campaign_directory / "figures"
     figures.mkdir(exist_ok=True)
-    write_shape_table(results, campaign_directory / "shape_table.csv")
-    save(shape_versus_angle(results), figures / "shape_vs_angle.png")
-    save(maps(results), figures / "maps.png")
-    save(gallery(results, directories), figures / "remnants.png")
-    save(conservation(results, directories), figures / "conservation.png")
-    return results, [campaign_directory / "shape_table.csv", *sorted(figures.glob("*.png"))]
+    table, page = campaign_directory / "shape_table.csv", campaign_directory / "report.html"
+    write_shape_table(results, table)
+    drawn = {
+        "shape_vs_angle": shape_versus_angle(results),
+        "maps": maps(results),
+        "remnants": gallery(results, directories),
+        "conservation": conservation(results, directories),
+    }
+    paths = [figures / f"{name}.png" for name in drawn]
+    for figure, path in zip(drawn.values(), paths, strict=True):
+        save(figure, path)
+    write_report(campaign, results, directories, paths, page)
+    return results, [table, *paths, page]

@@ -1,6 +1,6 @@
 """The cells of a campaign as tables, for the terminal, for a file and for the figures."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -65,11 +65,16 @@ def write_shape_table(results: xr.Dataset, path: Path) -> None:
 
 
 def printed(table: pd.DataFrame) -> str:
-    """The table for people: short headings, few digits, value +- error, a dash for what is not there."""
+    """The table for people, for a terminal."""
+    shown, formatters = as_shown(table)
+    return shown.to_string(index=False, formatters=formatters, na_rep="-")
+
+
+def as_shown(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, Callable[[object], str]]]:
+    """Short headings, value +- error, and how to write each column: few digits, a dash for what is not there."""
     hours = {name: table[name] / 3600.0 for name in ("spin_period", "spin_period_error") if name in table}
     shown = _with_errors(table.assign(**hours)).rename(columns=HEADINGS)
-    formatters = {name: partial(_text, decimals=DECIMALS.get(name)) for name in shown.columns}
-    return shown.to_string(index=False, formatters=formatters, na_rep="-")
+    return shown, {name: partial(_text, decimals=DECIMALS.get(name)) for name in shown.columns}
 
 
 def _with_errors(table: pd.DataFrame) -> pd.DataFrame:

@@ -61,7 +61,8 @@ def test_every_layout_has_its_table_and_figures(tmp_path: Path, layout: str) -> 
     coords, done = LAYOUTS[layout]
     cells = grid(coords)
     results, written = plots(campaign(tmp_path, coords, cells, done))
-    assert {path.name for path in written} == {"shape_table.csv", *(f"{name}.png" for name in FIGURES)}
+    names = {"shape_table.csv", "report.html", *(f"{name}.png" for name in FIGURES)}
+    assert {path.name for path in written} == names
     check_figures(tmp_path)
     table = pd.read_csv(tmp_path / "shape_table.csv")
     assert len(table) == len(cells) and table["b_over_a"].notna().sum() == done

@@ -1,0 +1,108 @@
+"""A campaign on one page, report.html, that needs no other file: to send, to print, to keep with a paper."""
+
+import json
+from base64 import b64encode
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+from jinja2 import Environment, PackageLoader
+
+from analysis.campaign import Campaign
+from analysis.figures.style import Directories
+from analysis.tables import as_shown, reasons, shape_table, unresolved
+from engine.jobdir import JobDirectory
+from engine.storage import write_atomically
+
+CAPTIONS = {
+    "remnants": "The largest remnant of every collision, along its shortest axis and edge-on.",
+    "shape_vs_angle": "Axis ratios of the largest remnant against impact angle.",
+    "maps": "Mass and axis ratios of the largest remnant over velocity and angle.",
+    "conservation": "Energies of one run, and drifts of the conserved quantities of all.",
+}
+"""Figures in the order of the page."""
+
+DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
+
+_page = Environment(
+    loader=PackageLoader("analysis"), autoescape=True, trim_blocks=True, lstrip_blocks=True
+).get_template("report.html")
+
+
+def write_report(
+    campaign: Campaign, results: xr.Dataset, directories: Directories, figures: Sequence[Path], path: Path
+) -> None:
+    """Write the page of a campaign.
+
+    Args:
+        campaign: its description.
+        results: its results.nc.
+        directories: its jobs.
+        figures: PNG files, named as in `CAPTIONS`.
+        path: where the page is written.
+    """
+    text = _page.render(
+        campaign=campaign,
+        counts=results["state"].to_series().value_counts().to_dict(),
+        table=_html(shape_table(results)),
+        notes=[*unresolved(results), *reasons(results)],
+        figures=[(CAPTIONS[figure.stem], _embedded(figure)) for figure in sorted(figures, key=_rank)],
+        drifts=[_largest(results[name]) for name in DRIFTS],
+        cpu_hours=float(results["cpu_time"].sum()) / 3600.0,
+        settings=results.attrs,
+        sessions=_sessions(directories),
+    )
+    write_atomically(path, lambda partial: _write(partial, text))
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
+
+
+def _rank(figure: Path) -> int:
+    return list(CAPTIONS).index(figure.stem)
+
+
+def _embedded(figure: Path) -> str:
+    """A figure as the address of its own content."""
+    return f"data:image/png;base64,{b64encode(figure.read_bytes()).decode()}"
+
+
+def _html(table: pd.DataFrame) -> str:
+    """The table as on a terminal; pandas escapes its texts."""
+    shown, formatters = as_shown(table)
+    return shown.to_html(index=False, formatters=formatters, na_rep="-", border=0)
+
+
+def _largest(drift: xr.DataArray) -> tuple[str, str]:
+    """What drifts, and the largest drift of all jobs."""
+    return str(drift.attrs["long_name"]), f"{float(abs(drift).max()):.2g}"
+
+
+def _sessions(directories: Directories) -> dict[str, list[str]]:
+    """Every code, package and device that computed a job, each named once."""
+    found: dict[str, set[str]] = {}
+    for directory in directories.values():
+        for session in _sessions_of(JobDirectory(directory)):
+            for name, value in _facts(session):
+                found.setdefault(name, set()).add(value)
+    return {name: sorted(values) for name, values in found.items()}
+
+
+def _sessions_of(job: JobDirectory) -> list[Any]:
+    """A damaged record must not hide the others."""
+    try:
+        return list(json.loads(job.provenance.read_text(encoding="utf-8"))["sessions"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+
+
+def _facts(session: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    git = session.get("git", {})
+    yield "code", f"{git.get('commit', 'unknown')}{' with changes' if git.get('dirty') else ''}"
+    for name in ("python", "arch", "precision", "threads", "platform"):
+        yield name, str(session.get(name, "unknown"))
+    for package, version in session.get("packages", {}).items():
+        yield package, str(version)
