@@ -51,7 +51,7 @@ def write_report(
         figures=[(CAPTIONS[figure.stem], _embedded(figure)) for figure in sorted(figures, key=_rank)],
         drifts=[_largest(results[name]) for name in DRIFTS],
         cpu_hours=float(results["cpu_time"].sum()) / 3600.0,
-        settings=results.attrs,
+        settings={name: _plain(value) for name, value in results.attrs.items()},
         sessions=_sessions(directories),
     )
     write_atomically(path, lambda partial: _write(partial, text))
@@ -79,6 +79,10 @@ def _html(table: pd.DataFrame) -> str:
 def _largest(drift: xr.DataArray) -> tuple[str, str]:
     """What drifts, and the largest drift of all jobs."""
     return str(drift.attrs["long_name"]), f"{float(abs(drift).max()):.2g}"
+
+
+def _plain(value: Any) -> str:
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 
 def _sessions(directories: Directories) -> dict[str, list[str]]:

@@ -16,7 +16,10 @@ from engine.mistakes import suggestion
 from engine.precision import choose
 
 application = typer.Typer(
-    add_completion=False, no_args_is_help=True, help="One simulation: a scene in, a job directory out."
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="One simulation: a scene in, a job directory out.",
 )
 
 DONE, FAILED, BAD_INPUT, BUSY, INTERRUPTED = 0, 1, 2, 3, 130

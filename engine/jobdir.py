@@ -27,7 +27,7 @@ class Status:
     """Content of status.json, as a run last wrote it.
 
     Attributes:
-        state: `running`, `done` or `failed`; readers derive `pending` and `interrupted`.
+        state: `running`, `interrupted`, `done` or `failed`; readers derive `pending`, and what a dead process left.
         reason: one line on a failure, empty otherwise.
         fault: the same in parts, when a guard stopped the run.
         time, start_time, end_time: simulated time [s], now and at both ends.

@@ -4,7 +4,8 @@ import logging
 import signal
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -13,7 +14,7 @@ import numpy as np
 
 from engine import PHYSICS_VERSION, backend
 from engine.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
-from engine.errors import Fault, GuardFault
+from engine.errors import Fault, GuardFault, JobError, SceneError
 from engine.guard import Guard
 from engine.history import History, Row
 from engine.jobdir import HEARTBEAT_PERIOD, JobDirectory, Status
@@ -58,7 +59,21 @@ def run_job(directory: Path, options: Options) -> Status:
             refuse_foreign(read_dataset(job.final), scene, job.final)
             return status
         backend.start(options.arch, options.threads)
-        return Run(scene, job, options).to_end()
+        try:
+            return Run(scene, job, options).to_end()
+        except (SceneError, JobError):
+            raise
+        except Exception as error:
+            _leave_word(job, error)
+            raise
+
+
+def _leave_word(job: JobDirectory, error: Exception) -> None:
+    """Say what ended a run that nothing foresaw, unless there is no room left for it."""
+    log.exception("ended by an error")
+    reason = " ".join(f"{type(error).__name__}: {error}".split())
+    with suppress(OSError):
+        job.write_status(replace(job.status(), state="interrupted", reason=reason))
 
 
 class Run:

@@ -12,6 +12,8 @@ import pytest
 from analysis.particles import snapshots
 from engine import PHYSICS_VERSION
 from engine.jobdir import JobDirectory
+from engine.run import Options, run_job
+from engine.simulation import Simulation
 from engine.storage import read_dataset, write_dataset
 from tests.engine.jobs import (
     assert_same,
@@ -125,6 +127,24 @@ def test_a_fault_ends_as_failed_with_its_reason(tmp_path: Path) -> None:
     assert status.state == "failed"
     assert "particle" in status.reason and "try" in status.reason
     assert not (directory / "final.nc").exists()
+
+
+def test_an_unforeseen_error_leaves_word_and_the_run_goes_on(
+    tmp_path: Path, reference: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    directory = write_job(tmp_path / "job")
+    job = JobDirectory(directory)
+
+    def no_room(*given: object) -> None:
+        raise MemoryError("no room\nat all")
+
+    with monkeypatch.context() as patch, pytest.raises(MemoryError):
+        patch.setattr(Simulation, "rebuild_blocks", no_room)
+        run_job(directory, Options())
+    assert (job.status().state, job.status().reason) == ("interrupted", "MemoryError: no room at all")
+    assert "no_room" in caplog.text
+    assert run_job(directory, Options()).state == "done"
+    assert_same_results(directory, reference)
 
 
 def test_a_checkpoint_of_another_scene_is_refused(tmp_path: Path) -> None:
