@@ -160,7 +160,9 @@ def test_expansion_leaves_the_study_as_it_is():
     assert study.model_dump() == before
 
 
-@pytest.mark.parametrize(("name", "jobs"), [("accuracy", 96), ("quick", 9), ("sugiura2018", 72), ("talk2025", 3)])
+@pytest.mark.parametrize(
+    ("name", "jobs"), [("accuracy", 96), ("friction", 50), ("quick", 9), ("sugiura2018", 72), ("talk2025", 3)]
+)
 def test_shipped_studies(name, jobs):
     campaign = expand(read_study(find_study(name)), name)
     assert campaign.name == name
@@ -169,7 +171,7 @@ def test_shipped_studies(name, jobs):
 
 
 def test_all_shipped_studies_are_known_here():
-    assert {path.stem for path in SHIPPED.iterdir()} == {"accuracy", "quick", "sugiura2018", "talk2025"}
+    assert {path.stem for path in SHIPPED.iterdir()} == {"accuracy", "friction", "quick", "sugiura2018", "talk2025"}
 
 
 def test_talk_cases_end_at_their_own_times():
