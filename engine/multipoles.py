@@ -113,9 +113,7 @@ class Multipoles(SelfGravity):
         for i in range(begin, end):
             c, Q = self.centre[acting[i]], self.quadrupole[acting[i]]
             dx, dy, dz = X - c[0], Y - c[1], Z - c[2]
-            Qx = Q[0] * dx + Q[5] * dy + Q[4] * dz
-            Qy = Q[5] * dx + Q[1] * dy + Q[3] * dz
-            Qz = Q[4] * dx + Q[3] * dy + Q[2] * dz
+            Qx, Qy, Qz = row_product(Q, dx, dy, dz)
             square = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / square
             fifth = inverse * inverse * ti.sqrt(inverse)
@@ -135,9 +133,7 @@ class Multipoles(SelfGravity):
         for i in range(begin, end):
             c, Q = self.centre[acting[i]], self.quadrupole[acting[i]]
             dx, dy, dz = X - c[0], Y - c[1], Z - c[2]
-            Qx = Q[0] * dx + Q[5] * dy + Q[4] * dz
-            Qy = Q[5] * dx + Q[1] * dy + Q[3] * dz
-            Qz = Q[4] * dx + Q[3] * dy + Q[2] * dz
+            Qx, Qy, Qz = row_product(Q, dx, dy, dz)
             inverse = 1.0 / (dx * dx + dy * dy + dz * dz)
             both = 0.5 * (dx * Qx + dy * Qy + dz * Qz) * inverse * inverse
             potential -= ti.sqrt(inverse) * (c[3] + both)
@@ -153,6 +149,12 @@ def _shape(count: int) -> tuple[int, int]:
     """Levels below the root, and particles in a leaf."""
     depth = max(0, math.ceil(math.log2(count / LEAF)))
     return depth, -(-count >> depth)
+
+
+@ti.func
+def row_product(Q, dx, dy, dz):
+    """Components of Q d for a packed tensor and a row of vectors d."""
+    return Q[0] * dx + Q[5] * dy + Q[4] * dz, Q[5] * dx + Q[1] * dy + Q[3] * dz, Q[4] * dx + Q[3] * dy + Q[2] * dz
 
 
 @ti.func

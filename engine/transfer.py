@@ -277,7 +277,7 @@ class Transfer:
         c, diffusivity = self.constitution.update(p, L, dt)
         if not self.particles.j[p] > -1.0 or tm.isinf(self.particles.j[p]):
             self.clock.report_fault(FAULT_INVERTED, self.particles.index[p])
-        deformation = ti.max(norm_squared(L), LARGEST_INCREMENT * self.release(p))
+        deformation = ti.max(norm_squared(L), self.release(p))
         return vec4(c + v.norm(), deformation, self.gravity.at(p).norm_sqr(), diffusivity)
 
     @ti.func
@@ -294,13 +294,14 @@ class Transfer:
         self.particles.x[p] = self.particles.x[p] + dt * v
         self.particles.v[p] = v
         self.particles.C[p] = 0.5 * (self.particles.C[p] - self.particles.C[p].transpose())
-        return vec4(self.constitution.signal_speed(p) + v.norm(), LARGEST_INCREMENT * self.release(p), 0.0, 0.0)
+        return vec4(self.constitution.signal_speed(p) + v.norm(), self.release(p), 0.0, 0.0)
 
     @ti.func
     def release(self, p):
-        """Growth [1/s^2] of the velocity gradient of particle p under its own stress, where nothing else holds it."""
+        """Square [1/s^2] of the velocity gradient that limits the step as the stress of particle p, let loose, does."""
         dx, rho0 = ti.cast(self.dx[None], Real), self.constitution.table[self.particles.body[p]].rho0
-        return 4.0 * ti.sqrt(norm_squared(unpack(self.particles.tau[p]))) / (rho0 * dx * dx)
+        growth = 4.0 * ti.sqrt(norm_squared(unpack(self.particles.tau[p]))) / (rho0 * dx * dx)
+        return LARGEST_INCREMENT * growth
 
     @ti.func
     def check_place(self, p):

@@ -8,13 +8,13 @@ import pandas as pd
 import xarray as xr
 from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
 from analysis.accuracy.cases import SEVERAL
 from analysis.accuracy.measure import MEASURED
 from analysis.campaign import NONE
 from analysis.figures.style import GREY, MARKERS
 from analysis.variables import OUTCOMES
+from engine.verification.log_axes import label_decades
 from engine.verification.pareto import pareto
 
 HIDDEN = 0.05
@@ -52,10 +52,8 @@ def errors(found: xr.Dataset, name: str) -> pd.DataFrame:
 
 
 def _panel(axes: Any, runs: pd.DataFrame, looks: dict[str, Any]) -> None:
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=20))
-        axis.set_major_formatter(FormatStrFormatter("%g"))
-        axis.set_minor_formatter(NullFormatter())
+    label_decades(axes.xaxis, runs["cpu_time"])
+    label_decades(axes.yaxis, runs["error"])
     front = pareto(runs)
     axes.plot(front["cpu_time"], front["error"], "--", color=GREY, linewidth=1.0, zorder=1)
     for _, run in runs.iterrows():

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel
 
 from engine.particles import Arrays
 from engine.scene import Scene
 from engine.simulation import Simulation
+from engine.validation import Model
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def timed() -> Iterator[None]:
     _stepping.get([]).append(time.process_time() - begun)
 
 
-def altered(model: BaseModel, key: str, value: Any) -> Any:
+def altered(model: Model, key: str, value: Any) -> Model:
     """A model with the value at a dotted key replaced; a part that is left out stays so."""
     name, _, rest = key.partition(".")
     part = getattr(model, name)

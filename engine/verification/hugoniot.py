@@ -12,6 +12,7 @@ from engine.materials import Material
 from engine.scene import Numerics, Physics, Scene, Viscosity
 from engine.verification.check import Check, share
 from engine.verification.drive import Array, Moment, begin, follow
+from engine.verification.rock import condensed_pressure
 
 BASALT = Material()
 
@@ -35,7 +36,7 @@ class Shock:
         least = (BASALT.tillotson.A / BASALT.rho0) ** 0.5
 
         def excess(Us: float) -> float:
-            return BASALT.rho0 * Us * self.up - self._pressure(self.up / (Us - self.up))
+            return BASALT.rho0 * Us * self.up - condensed_pressure(BASALT, self.up / (Us - self.up), self.E)
 
         return float(brentq(excess, self.up + 0.5 * least, 10.0 * (self.up + least), xtol=1e-9))
 
@@ -53,12 +54,6 @@ class Shock:
     def compression(self) -> float:
         """rho/rho0 - 1 [-]."""
         return self.up / (self.Us - self.up)
-
-    def _pressure(self, mu: float) -> float:
-        """Tillotson's compressed branch [Pa]."""
-        t, rho = BASALT.tillotson, BASALT.rho0 * (1.0 + mu)
-        hot = t.a + t.b / (self.E / (t.E0 * (1.0 + mu) ** 2) + 1.0)
-        return hot * rho * self.E + t.A * mu + t.B * mu**2
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,19 @@ NEGLIGIBLE = 1e-12
 """Grueneisen constants so small that heat makes no pressure."""
 
 
+def condensed_pressure(material: Material, mu: float, E: float) -> float:
+    """Pressure [Pa] of compressed or cold matter, apart from the engine (engine/physics.md, section 2).
+
+    Args:
+        material: what it is of.
+        mu: rho/rho0 - 1 [-].
+        E: specific internal energy [J/kg].
+    """
+    t, eta = material.tillotson, 1.0 + mu
+    gruneisen = t.a + t.b / (E / (t.E0 * eta**2) + 1.0)
+    return gruneisen * (material.rho0 * eta) * E + t.A * mu + t.B * mu**2
+
+
 def elastic(rho0: float, bulk: float, shear: float, friction: float = 0.0) -> Material:
     """Matter of constant moduli, P = K (rho/rho0 - 1), without cohesion.
 

@@ -9,9 +9,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
 from engine.verification.knobs import TRADEOFFS
+from engine.verification.log_axes import label_decades
 from engine.verification.pareto import pareto
 
 COLUMNS = 4
@@ -36,11 +36,8 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
 
 def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:
     axes.set(xscale="log", yscale="log")
-    for axis, column in ((axes.xaxis, "cpu_time"), (axes.yaxis, "error")):
-        several_decades = runs[column].max() > 1e3 * runs[column].min()
-        axis.set_major_locator(LogLocator(subs=(1.0,) if several_decades else (1.0, 2.0, 5.0), numticks=8))
-        axis.set_major_formatter(FormatStrFormatter("%g"))
-        axis.set_minor_formatter(NullFormatter())
+    label_decades(axes.xaxis, runs["cpu_time"])
+    label_decades(axes.yaxis, runs["error"])
     axes.tick_params(labelsize=7)
     for knob, group in runs.groupby("knob", sort=True):
         ordered = group.assign(number=pd.to_numeric(group["value"], errors="coerce")).sort_values("number")

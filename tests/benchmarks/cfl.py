@@ -12,6 +12,7 @@ from engine.errors import RunFault
 from engine.ledger import Totals
 from engine.scene import Scene
 from engine.simulation import Simulation
+from engine.verification.drive import altered
 
 PARTICLES = 1_000
 COURANT = (0.1, 0.15, 0.25, 0.35, 0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5)
@@ -55,8 +56,7 @@ def scene(velocity: float, cfl: float) -> Scene:
     """An oblique collision without gravity; `cfl` may exceed what a scene file may ask for."""
     given = Collision(velocity=velocity, angle=15.0, particles=PARTICLES, gravity=None, start_separation=1.05)
     end = PASSAGE * given.radius / velocity
-    built = given.model_copy(update={"end_time": end}).scene()
-    return built.model_copy(update={"numerics": built.numerics.model_copy(update={"cfl": cfl})})
+    return altered(given.model_copy(update={"end_time": end}).scene(), "numerics.cfl", cfl)
 
 
 def collide(velocity: float, cfl: float) -> Outcome:

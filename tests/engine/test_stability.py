@@ -15,10 +15,10 @@ from engine.__main__ import application
 from engine.jobdir import JobDirectory
 from engine.precision import chosen
 from engine.storage import read_dataset
+from engine.verification.processes import in_own_process
 from engine.verification.stability import matrix
 from engine.verification.stability.case import Case, alone, uniform
 from engine.verification.stability.cases import FREE, all_cases
-from engine.verification.stability.matrix import in_own_process
 from engine.verification.stability.measures import LARGEST_GROWTH, Measures
 from engine.verification.stability.outcome import FAILED, STABLE, STOPPED, Outcome, failure, run_case
 from engine.verification.stability.results import dataset, summary, write

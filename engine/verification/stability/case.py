@@ -11,7 +11,8 @@ from engine.body import Body
 from engine.collision import Collision
 from engine.materials import Material
 from engine.particles import Arrays
-from engine.scene import Numerics, Physics, Scene
+from engine.scene import Physics, Scene
+from engine.verification.drive import altered
 
 Changes = Callable[[Scene], dict[str, NDArray[Any]]]
 
@@ -71,18 +72,17 @@ def alone(
 def with_rows(scene: Scene) -> Scene:
     """The scene with a row of the history for every part of its time, and no snapshots."""
     interval = (scene.end_time - scene.start_time) / ROWS
-    output = scene.output.model_copy(update={"history_interval": interval, "snapshot_interval": None})
-    return scene.model_copy(update={"output": output})
+    return altered(altered(scene, "output.history_interval", interval), "output.snapshot_interval", None)
 
 
 def with_courant_number(scene: Scene, cfl: float) -> Scene:
     """The scene at a time step that validation might refuse."""
-    return scene.model_copy(update={"numerics": Numerics().model_copy(update={"cfl": cfl})})
+    return altered(scene, "numerics.cfl", cfl)
 
 
 def in_single_precision(scene: Scene) -> Scene:
     """The scene in f32."""
-    return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"precision": "f32"})})
+    return altered(scene, "numerics.precision", "f32")
 
 
 def stiffened(factor: float) -> Material:

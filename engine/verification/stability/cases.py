@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from engine.body import Body
 from engine.scene import Gravity, Physics, Scene, Viscosity
+from engine.verification.drive import altered
 from engine.verification.rock import elastic
 from engine.verification.stability import states
 from engine.verification.stability.case import (
@@ -28,8 +29,7 @@ FLUID = Physics(shear=False, strength=False, fracture=None, gravity=None)
 def broken(scene: Scene) -> Scene:
     """The scene with bodies of rubble."""
     bodies = tuple(body.model_copy(update={"damage": 1.0}) for body in scene.bodies)
-    physics = scene.physics.model_copy(update={"fracture": None})
-    return scene.model_copy(update={"bodies": bodies, "physics": physics})
+    return altered(scene.model_copy(update={"bodies": bodies}), "physics.fracture", None)
 
 
 def pair(velocity: tuple[float, float, float]) -> Scene:

@@ -1,37 +1,18 @@
 """Running the whole matrix, each case in a process of its own: even one that dies is an outcome."""
 
 import logging
-from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
-from typing import ParamSpec, TypeVar
 
 from engine import backend
 from engine.jobdir import JobDirectory
-from engine.precision import Precision, choose
+from engine.verification.processes import in_own_process
 from engine.verification.stability.cases import all_cases
 from engine.verification.stability.outcome import Outcome, failure, run_case
 from engine.verification.stability.von_neumann import BLOCKS, Block, Limit
-
-Given = ParamSpec("Given")
-Result = TypeVar("Result")
-
-
-def in_own_process(
-    precision: Precision, function: Callable[Given, Result], *arguments: Given.args, **named: Given.kwargs
-) -> Result:
-    """What a function returns in a new process that computes in a precision.
-
-    Raises:
-        BrokenProcessPool: the process died.
-    """
-    # the initializer runs before the function, and so any device module, is imported
-    spawn = get_context("spawn")
-    with ProcessPoolExecutor(1, mp_context=spawn, initializer=choose, initargs=(precision,)) as pool:
-        return pool.submit(function, *arguments, **named).result()
 
 
 def run_all(jobs: Path, workers: int) -> Iterator[Outcome]:

@@ -5,9 +5,9 @@ import numpy as np
 from engine.blocks import EDGE, HALF_RANGE
 from engine.bounds import cold_energy
 from engine.initial import initial_state
-from engine.materials import Material
 from engine.particles import Arrays
 from engine.scene import Scene
+from engine.verification.rock import condensed_pressure
 from engine.verification.stability.case import Changes
 
 
@@ -18,7 +18,7 @@ def strained(eta: float, damage: float = 0.0) -> Changes:
         material = scene.materials[0]
         held = 1.0 if eta > 1.0 else 1.0 - damage
         energy = held * min(cold_energy(material, eta), 0.99 * material.tillotson.E_iv)
-        tau = -held * _condensed_pressure(material, eta, energy) / eta
+        tau = -held * condensed_pressure(material, eta - 1.0, energy) / eta
         return {
             # particles where such density puts them
             "x": initial_state(scene)["x"] * eta ** (-1.0 / 3.0),
@@ -28,13 +28,6 @@ def strained(eta: float, damage: float = 0.0) -> Changes:
         }
 
     return changes
-
-
-def _condensed_pressure(material: Material, eta: float, energy: float) -> float:
-    """Tillotson's first branch [Pa]."""
-    t, mu = material.tillotson, eta - 1.0
-    gruneisen = t.a + t.b / (energy / (t.E0 * eta**2) + 1.0)
-    return gruneisen * material.rho0 * eta * energy + t.A * mu + t.B * mu**2
 
 
 def expanding(rate: float) -> Changes:

@@ -20,7 +20,7 @@ from engine.body import Box
 from engine.errors import GuardFault
 from engine.materials import Material
 from engine.scene import Numerics, Physics, Scene
-from engine.verification.drive import begin
+from engine.verification.drive import altered, begin
 
 Array = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ class Block:
         box = Box(size=(edge,) * 3, lattice=self.lattice, position=(0.5 * edge,) * 3)
         numerics = Numerics(particles_per_cell=per_cell)
         scene = Scene(bodies=(box,), period=(edge,) * 3, end_time=1e6, physics=physics, numerics=numerics)
-        return scene.model_copy(update={"numerics": numerics.model_copy(update={"cfl": cfl})})
+        return altered(scene, "numerics.cfl", cfl)
 
     def limit(self) -> Limit:
         """Both limits; Taichi must have been started."""

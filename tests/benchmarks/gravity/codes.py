@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from engine.direct_sum import DirectSum
 from engine.orbit import G
-from engine.particles import Particles
 from engine.tree import Tree
 from tests.benchmarks.gravity.states import State
 from tests.engine.monopoles import Monopoles
@@ -35,8 +34,7 @@ class Ours(Code):
     """The engine's tree, from particles on the device to accelerations on the host; Taichi must have been started."""
 
     def __init__(self, state: State, quadrupole: bool) -> None:
-        self.particles, self.radius = Particles(len(state.x)), state.radius
-        self.particles.write({"x": state.x, "v": np.zeros_like(state.x), "mass": state.mass})
+        self.particles, self.radius = state.particles(), state.radius
         self.tree = (Tree if quadrupole else Monopoles)(self.particles, self.radius, 1.0)
 
     def exact(self) -> Pull:

@@ -5,13 +5,11 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from engine.collision import Collision
 from engine.direct_sum import DirectSum
 from engine.gravity import SelfGravity
-from engine.particles import Particles
 from engine.run import Options, run_job
 from engine.scene import Gravity
 from engine.tree import Tree
@@ -67,8 +65,7 @@ def watched(kind: type, name: str) -> Stopwatch:
 
 def error_of_defaults(state: State) -> dict[str, float]:
     """Relative errors of the accelerations that a simulation uses, with the default opening."""
-    particles = Particles(len(state.x))
-    particles.write({"x": state.x, "v": np.zeros_like(state.x), "mass": state.mass})
+    particles = state.particles()
     Tree(particles, state.radius, Gravity().opening).accelerate(0.0)
     used = particles.read("acceleration")["acceleration"]
     return error(used, DirectSum(particles, state.radius).pull(0.0))

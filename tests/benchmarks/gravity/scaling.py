@@ -3,7 +3,6 @@
 from typing import Any
 
 from engine import backend
-from engine.particles import Particles
 from engine.scene import Gravity
 from engine.tree import Tree
 from tests.benchmarks.child import answer
@@ -17,8 +16,7 @@ def measure(count: int) -> dict[str, Any]:
     """Least CPU time [ms] of the arrangement, of tree and walk, and of all that a simulation calls."""
     backend.start(threads=1)
     state = along_curve(sphere(count))
-    particles = Particles(count)
-    particles.write({"x": state.x, "v": 0.0 * state.x, "mass": state.mass})
+    particles = state.particles()
     tree = Tree(particles, state.radius, Gravity().opening)
     tree.accelerate(0.0)
     watches = {"arrange": Stopwatch(), "solve": Stopwatch(), "accelerate": Stopwatch()}

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.particles import Particles
+
 SPHERE, LATE = "uniform sphere", "late collision"
 PER_BODY = 20_000
 
@@ -17,6 +19,12 @@ class State:
     x: NDArray[np.float64]
     mass: NDArray[np.float64]
     radius: float
+
+    def particles(self) -> Particles:
+        """The same on the device, at rest; Taichi must have been started."""
+        result = Particles(len(self.x))
+        result.write({"x": self.x, "v": np.zeros_like(self.x), "mass": self.mass})
+        return result
 
 
 def sphere(count: int) -> State:
