@@ -69,7 +69,7 @@ def _local(resources: Resources) -> Any:
             threads_per_worker=resources.workers,
             processes=False,
             memory_limit=0,
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",  # any port, so that campaigns beside each other are quiet
             silence_logs=logging.ERROR,
         )
 

@@ -1,5 +1,7 @@
 """Sharing the cores among jobs, and the cluster on this machine."""
 
+import warnings
+
 import pytest
 
 from campaigns import cluster
@@ -34,3 +36,10 @@ def test_a_machine_that_slept_keeps_its_workers():
         if scheduler.worker_ttl:
             client.sync(scheduler.check_worker_ttl)
         assert client.submit(int, 1).result(timeout=10) == 1
+
+
+def test_two_campaigns_at_once_warn_of_nothing():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with connect(Resources(workers=1, threads=1)) as one, connect(Resources(workers=1, threads=1)) as other:
+            assert one.submit(int, 1).result(timeout=10) == other.submit(int, 1).result(timeout=10) == 1

@@ -161,7 +161,7 @@ def test_expansion_leaves_the_study_as_it_is():
 
 
 @pytest.mark.parametrize(
-    ("name", "jobs"), [("accuracy", 96), ("friction", 50), ("quick", 9), ("sugiura2018", 72), ("talk2025", 3)]
+    ("name", "jobs"), [("accuracy", 96), ("friction", 30), ("quick", 9), ("sugiura2018", 72), ("talk2025", 3)]
 )
 def test_shipped_studies(name, jobs):
     campaign = expand(read_study(find_study(name)), name)
