@@ -1,4 +1,4 @@
-"""Shape of the largest remnant against impact angle, one line per velocity."""
+"""Shape of the largest remnant against impact angle, one line per velocity and series."""
 
 from collections.abc import Iterator
 from itertools import cycle
@@ -10,7 +10,7 @@ from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from analysis.figures.style import GREY, MARKERS, nothing_done, velocity_colours
+from analysis.figures.style import GREY, MARKERS, nothing_done, shades
 from analysis.tables import cells, series
 
 Look = dict[str, Any]
@@ -45,13 +45,16 @@ def shape_versus_angle(results: xr.Dataset) -> Any:
 
 
 def _lines(results: xr.Dataset) -> Iterator[tuple[str, tuple[Look, pd.DataFrame]]]:
-    """Label, look and cells of each line: colour and marker tell the velocity, the dashes the series."""
-    colours = velocity_colours(cells(results)["velocity"].dropna())
+    """Label, look and cells of each line: colour and marker tell the velocity, or, where there is one, the series."""
+    groups, velocities = list(series(results)), cells(results)["velocity"].dropna().unique()
+    by_velocity = len(velocities) > 1
+    colours = shades(velocities if by_velocity else range(len(groups)))
     markers = dict(zip(colours, cycle(MARKERS), strict=False))
-    for (title, table), dashes in zip(series(results), cycle(DASHES), strict=False):
+    for number, ((title, table), dashes) in enumerate(zip(groups, cycle(DASHES), strict=False)):
         for speed, rows in table.groupby("velocity"):
             velocity = float(str(speed))
-            look = {"color": colours[velocity], "marker": markers[velocity], "linestyle": dashes}
+            level = velocity if by_velocity else float(number)
+            look = {"color": colours[level], "marker": markers[level], "linestyle": dashes}
             yield f"{velocity:g} m/s" + (f", {title}" if title else ""), (look, rows)
 
 

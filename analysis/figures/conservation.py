@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 
-from analysis.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, velocity_colours
+from analysis.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, shades
 from analysis.ledger import drifts, read_history
 from analysis.tables import cells
 from engine.jobdir import JobDirectory
@@ -58,7 +58,7 @@ def _ledger(figure: Any, history: xr.Dataset, cell: pd.Series) -> None:
 
 def _drifts(figure: Any, done: pd.DataFrame, directories: Directories) -> None:
     panels = figure.subplots(2, 2, sharex=True, sharey=True).ravel()
-    colours = velocity_colours(done["velocity"])
+    colours = shades(done["velocity"])
     for _, cell in done.iterrows():
         job = JobDirectory(directories[cell["job"]])
         changes = drifts(read_history(job.history), scene_in(job.path)).isel(time=slice(1, None))

@@ -1,5 +1,6 @@
 """One look for all figures: fonts, sizes, and colours that colour-blind readers can tell apart."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -43,9 +44,9 @@ plt.rcParams.update(
 )
 
 
-def velocity_colours(velocities: Any) -> dict[float, Any]:
-    """A colour for each velocity, dark for slow and light for fast."""
-    levels = sorted({float(velocity) for velocity in velocities})
+def shades(levels: Iterable[float]) -> dict[float, Any]:
+    """A colour for each level, dark for low and light for high."""
+    levels = sorted({float(level) for level in levels})
     return dict(zip(levels, plt.get_cmap("viridis")(np.linspace(0.0, 0.88, len(levels))), strict=True))
 
 

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from analysis.__main__ import app, main
 from analysis.collect import collect
+from analysis.figures.angle import shape_versus_angle
 from analysis.figures.surface import picture
 from analysis.plots import plots
 from analysis.tables import printed, reasons, series, shape_table
@@ -94,6 +95,16 @@ def test_series_are_told_apart_by_everything_but_velocity_angle_and_seed(tmp_pat
     groups = list(series(collect(campaign(tmp_path, coords, grid(coords), 0))))
     assert [name for name, _ in groups] == ["viscosity.shear 0", "viscosity.shear 100000"]
     assert [len(rows) for _, rows in groups] == [4, 4]
+
+
+@pytest.mark.parametrize("velocities", [[200.0], [100.0, 200.0]])
+def test_no_two_lines_look_alike(tmp_path: Path, velocities: list[float]) -> None:
+    coords = {"velocity": velocities, "angle": [5.0], "friction": [0.4, 0.5, 0.6, 0.8]}
+    results = collect(campaign(tmp_path, coords, grid(coords), 4 * len(velocities)))
+    lines = shape_versus_angle(results).legends[0].get_lines()[:-1]
+    looks = {(tuple(line.get_color()), line.get_marker(), line.get_linestyle()) for line in lines}
+    assert len(lines) == len(looks) == 4 * len(velocities)
+    assert len({look[0] for look in looks}) == (4 if len(velocities) == 1 else 2)
 
 
 def test_reasons_name_the_job(tmp_path: Path) -> None:
