@@ -131,7 +131,7 @@ def test_what_seeds_do_not_resolve_is_said() -> None:
 
 def test_figures_show_the_errors(tmp_path: Path) -> None:
     results, written = plots(campaign(tmp_path))
-    assert len(written) == 5
+    assert len(written) == 6
     figure = shape_versus_angle(results)
     bars = figure.axes[0].containers[0].lines[2][0].get_segments()
     lengths = [0.5 * (bar[1][1] - bar[0][1]) for bar in bars]
