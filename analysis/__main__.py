@@ -51,8 +51,11 @@ def main() -> None:
     """Run the command line; whatever the user can mend is one line on stderr and exit code 2."""
     try:
         app()
-    except (SceneError, JobError, RunFault, OSError) as error:
+    except (SceneError, JobError, RunFault) as error:
         typer.echo(str(error), err=True)
+        sys.exit(2)
+    except OSError as error:
+        typer.echo(f"{error.filename}: {error.strerror}; results of jobs are kept, run again", err=True)
         sys.exit(2)
 
 

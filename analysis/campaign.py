@@ -10,6 +10,9 @@ from engine.validation import read_table, validate
 
 Scalar = float | int | str
 
+OVERRULED = "material.damaged_friction"
+"""A parameter whose place `friction`, or else `parameter_set`, takes in a collision."""
+
 NONE = "none"
 """What stands for a parameter that is not set, since netCDF knows no null."""
 
@@ -27,7 +30,7 @@ class Job(BaseModel):
     @property
     def parameters(self) -> dict[str, Scalar]:
         """The parameters of the collision by dotted key: `viscosity.shear` for `viscosity: {shear}`."""
-        return flatten(self.collision)
+        return {key: value for key, value in flatten(self.collision).items() if key != OVERRULED}
 
 
 class Campaign(BaseModel):

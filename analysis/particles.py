@@ -32,6 +32,7 @@ class Particles:
         spacing: particle spacing h [m].
         time: simulated time after contact [s].
         physics_version: of the engine that made them.
+        scene_hash: of the scene that they are of.
     """
 
     position: Array
@@ -43,6 +44,7 @@ class Particles:
     spacing: float
     time: float
     physics_version: int
+    scene_hash: str
 
     def select(self, chosen: NDArray[np.bool_]) -> "Particles":
         """The particles where `chosen`, shape [particle_count], holds."""
@@ -76,6 +78,7 @@ def _particles(dataset: xr.Dataset) -> Particles:
         spacing=float(dataset.attrs["spacing"]),
         time=float(dataset.attrs["time"]),
         physics_version=int(dataset.attrs["physics_version"]),
+        scene_hash=str(dataset.attrs["scene_hash"]),
     )
 
 

@@ -18,6 +18,9 @@ from engine.scene import scene_in
 
 Numbers = dict[str, float]
 
+ANEW = "delete the directory of this job and run the study again to compute it anew"
+"""What to do with a job whose files are damaged."""
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -48,11 +51,13 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
         particles = read_particles(job.final)
         if particles.physics_version != physics_version:
             raise JobError(f"computed with physics version {particles.physics_version}, not {physics_version}")
+        if particles.scene_hash != scene_in(job.path).hash():
+            raise JobError(f"{job.final}: is not of the scene in this directory")
         return Outcome("done", "", measure(job, particles))
     except RunFault as fault:
         return Outcome("failed", _line(fault), {})
     except Exception as error:  # whatever is wrong with one job must not hide the others
-        return Outcome("corrupt", _line(error), {})
+        return Outcome("corrupt", f"{_line(error)}; {ANEW}", {})
 
 
 def latest(job: JobDirectory) -> Particles:

@@ -42,7 +42,8 @@ def cells(results: xr.Dataset) -> pd.DataFrame:
 def series(results: xr.Dataset) -> Iterator[tuple[str, pd.DataFrame]]:
     """The cells apart by every parameter but velocity, angle and seed: a name, empty for a single one, and its rows."""
     table = cells(results)
-    names = [str(name) for name in results.coords if name not in NOT_A_SERIES and table[name].nunique(dropna=False) > 1]
+    hidden = [name for name in NOT_A_SERIES if not (name == "end_time" and name in results.dims)]
+    names = [str(name) for name in results.coords if name not in hidden and table[name].nunique(dropna=False) > 1]
     if not names:
         yield "", table
         return
@@ -101,10 +102,10 @@ def unresolved(results: xr.Dataset) -> list[str]:
     return lines
 
 
-def reasons(results: xr.Dataset) -> list[str]:
-    """One line per job that gives a reason for having no outcome."""
+def reasons(results: xr.Dataset, *states: str) -> list[str]:
+    """One line per job, in any of some states if given, that gives a reason for having no outcome."""
     table = cells(results)
-    told = table[table["reason"] != ""]
+    told = table[(table["reason"] != "") & (table["state"].isin(states) if states else True)]
     return [f"{row.job}: {row.state}: {row.reason}" for row in told.itertuples()]
 
 

@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 
 from analysis.collect import collect as collect_results
+from analysis.tables import reasons
 from campaigns.campaign import Campaign
 from campaigns.cluster import Resources, connect, share_cores
 from campaigns.directory import CampaignDirectory
@@ -19,7 +20,7 @@ from campaigns.estimate import count_by_state
 from campaigns.expansion import expand
 from campaigns.plan import decide
 from campaigns.run import Run
-from campaigns.state import JobState, states
+from campaigns.state import CORRUPT, JobState, states
 from campaigns.study import Study, find_study, read_study
 from engine.errors import JobError, SceneError
 
@@ -148,14 +149,18 @@ def _finish(directory: CampaignDirectory, jobs: Sequence[JobState], arguments: s
         if job.status.state != "done":
             print(f"{job.id}  {job.status.state}: {decide(job.status, False).reason}")
     print(count_by_state([job.status for job in jobs]))
-    _collect(directory, arguments)
-    if any(job.status.state != "done" for job in jobs):
+    unsound = _collect(directory, arguments)
+    if unsound or any(job.status.state != "done" for job in jobs):
         raise typer.Exit(1)
 
 
-def _collect(directory: CampaignDirectory, arguments: str) -> None:
-    collect_results(directory.path)
+def _collect(directory: CampaignDirectory, arguments: str) -> bool:
+    """Gather the results; whether a job that says done turned out to be damaged."""
+    damaged = reasons(collect_results(directory.path), CORRUPT)
+    for reason in damaged:
+        print(reason)
     print(f"results in {directory.path / 'results.nc'}; figures with: make plots {arguments}")
+    return bool(damaged)
 
 
 def _arguments(study: str, runs: Path) -> str:

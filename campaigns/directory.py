@@ -6,6 +6,7 @@ from pathlib import Path
 from campaigns.alias import HASH_LENGTH
 from campaigns.campaign import Campaign, Job
 from campaigns.expansion import scene_of
+from campaigns.keys import flatten
 from engine.errors import SceneError
 from engine.storage import write_atomically, write_json
 from engine.validation import read_table, validate
@@ -32,7 +33,11 @@ class CampaignDirectory:
         """
         if not self.file.is_file():
             raise SceneError(f"{self.path}: holds no campaign; start one with: make campaign STUDY=...")
-        return validate(Campaign, read_table(self.file), str(self.file))
+        try:
+            return validate(Campaign, read_table(self.file), str(self.file))
+        except SceneError as error:
+            way_out = "delete this file and run the study again: it is written anew, and finished jobs are kept"
+            raise SceneError(f"{error}; {way_out}") from error
 
     def admit(self, campaign: Campaign) -> Campaign:
         """The campaign as it may be written here: jobs that have a directory keep its name.
@@ -42,7 +47,7 @@ class CampaignDirectory:
         """
         if self.file.is_file():
             self._require_same(self.read(), campaign)
-        elif self.path.exists():
+        elif self.path.exists() and not self._holds_jobs_of(campaign):
             self._require_empty()
         names = {name[-HASH_LENGTH:]: name for name in self._job_names()}
         jobs = tuple(job.called(names.get(job.id[-HASH_LENGTH:], job.id)) for job in campaign.jobs)
@@ -67,6 +72,12 @@ class CampaignDirectory:
 
         write_atomically(path, write)
 
+    def _holds_jobs_of(self, campaign: Campaign) -> bool:
+        """Whether jobs of this campaign are here, also when its description is lost."""
+        return not {job.id[-HASH_LENGTH:] for job in campaign.jobs}.isdisjoint(
+            name[-HASH_LENGTH:] for name in self._job_names()
+        )
+
     def _job_names(self) -> list[str]:
         jobs = self.path / "jobs"
         return sorted(path.name for path in jobs.iterdir() if path.is_dir()) if jobs.is_dir() else []
@@ -84,7 +95,8 @@ class CampaignDirectory:
     def _require_same_settings(self, kept: Campaign, given: Campaign) -> None:
         before = kept.study.shared_settings(str(self.file))
         now = given.study.shared_settings("collision")
-        changed = [key for key in sorted(before | now) if before.get(key) != now.get(key)]
+        turned = flatten(kept.study.axes or {}) | flatten(given.study.axes or {})  # jobs differ in these by themselves
+        changed = [key for key in sorted(before | now) if before.get(key) != now.get(key) and key not in turned]
         if changed:
             details = ", ".join(f"{key} {before.get(key)} there and {now.get(key)} in the study" for key in changed)
             raise SceneError(f"{self.path}: holds results with other settings ({details}); {_WAY_OUT}")

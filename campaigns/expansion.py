@@ -6,6 +6,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
 from campaigns.alias import alias, job_id
 from campaigns.campaign import Campaign, Job
@@ -51,8 +52,10 @@ def scene_of(collision: Collision, source: str) -> Scene:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             return collision.scene()
     except (ValueError, ArithmeticError, IndexError) as error:
-        reason = " ".join(str(error).split())
-        raise SceneError(f"{source}: no scene can be built from velocity, radius and separation: {reason}") from error
+        text = error.errors()[0]["msg"] if isinstance(error, ValidationError) else str(error)
+        given = ", ".join(f"{key} {getattr(collision, key):g}" for key in ("velocity", "radius", "start_separation"))
+        reason = " ".join(text.removeprefix("Value error, ").split())
+        raise SceneError(f"{source}: no scene can be built from {given}: {reason}") from error
 
 
 @dataclass(frozen=True)
@@ -95,6 +98,9 @@ def _rows(study: Study, axes: dict[str, Any], source: str) -> Iterator[_Row]:
 
 def _kept(axes: dict[str, list[Any]], row: _Row) -> dict[str, list[Any]]:
     """The values of each axis that a case is run at: all of them, or the one it sets itself."""
+    for key, given in product(axes, row.changes):
+        if key.startswith(f"{given}.") or given.startswith(f"{key}."):
+            raise SceneError(f"{row.source}: '{given}' and 'axes.{key}' are parts of each other; keep one of them")
     for key in axes.keys() & row.changes.keys():
         if row.changes[key] not in axes[key]:
             raise SceneError(

@@ -54,7 +54,8 @@ def run(
     except (SceneError, JobError) as error:
         _exit(str(error), BAD_INPUT)
     except OSError as error:
-        _exit(f"{directory}: {error}; the last checkpoint is intact, run again to resume", FAILED)
+        place, reason = error.filename or directory, error.strerror or error
+        _exit(f"{place}: {reason}; the last checkpoint is intact, run again to resume", FAILED)
     if status.state != "done":
         _exit(f"{directory}: {status.state}: {status.reason}", FAILED if status.state == "failed" else INTERRUPTED)
     typer.echo(f"{directory}: done after {status.step} steps")
@@ -180,6 +181,7 @@ def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) 
     logging.basicConfig(
         filename=JobDirectory(directory).log, level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s"
     )
+    logging.raiseExceptions = False  # a full disk is told once
     console = Console(stderr=True)
     with console.status("starting") as spinner:
         options = Options(

@@ -19,6 +19,9 @@ CLOCK = {"time": float, "dt": float, "rate": float, "step": int, "moved_out": in
 EVENTS = ("gravity_due", "gravity_change", "gravity_force", "gravity_torque")
 """Attributes of the simulation that do."""
 
+ATTRIBUTES = {*CLOCK, *EVENTS, "physics_version", "scene_hash"}
+"""What no checkpoint lacks beside the particles."""
+
 
 def save_checkpoint(job: JobDirectory, simulation: Simulation, progress: dict[str, float]) -> None:
     """Write a checkpoint; the one before it is kept.
@@ -79,7 +82,8 @@ def _readable(path: Path, particles: Particles) -> xr.Dataset | None:
         dataset = read_dataset(path)
     except JobError:
         return None
-    return dataset if is_finite(dataset) and set(particles.held) <= set(dataset.data_vars) else None
+    whole = set(particles.held) <= set(dataset.data_vars) and set(dataset.attrs) >= ATTRIBUTES
+    return dataset if whole and dataset.sizes["particle"] == particles.count and is_finite(dataset) else None
 
 
 def _restore(dataset: xr.Dataset, simulation: Simulation) -> dict[str, float]:

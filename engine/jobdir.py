@@ -6,14 +6,14 @@ import socket
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, fields, replace
-from json import JSONDecodeError, loads
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import psutil
+from pydantic import TypeAdapter, ValidationError
 
 from engine.errors import Fault, JobBusyError, JobError
-from engine.storage import write_json
+from engine.storage import remove_partial_files, write_json
 
 STATES = ("pending", "running", "interrupted", "done", "failed")
 HEARTBEAT_PERIOD = 2.0
@@ -61,6 +61,9 @@ class Status:
         """Share of the simulated time that is done, 0 to 1."""
         span = self.end_time - self.start_time
         return (self.time - self.start_time) / span if span > 0.0 else 0.0
+
+
+_STATUS = TypeAdapter(Status)
 
 
 @dataclass(frozen=True)
@@ -120,15 +123,17 @@ class JobDirectory:
             JobError: status.json is damaged.
         """
         try:
-            content = loads(self.status_file.read_text(encoding="utf-8"))
-            known = {field.name for field in fields(Status)}
-            status = Status(**{key: value for key, value in content.items() if key in known})
-            if status.fault:
-                status = replace(status, fault=Fault(**content["fault"]))
+            status = _STATUS.validate_json(self.status_file.read_bytes())
         except FileNotFoundError:
             return Status(state="pending")
-        except (OSError, JSONDecodeError, UnicodeDecodeError, TypeError, AttributeError) as error:
+        except ValidationError as error:
+            issue = error.errors(include_url=False)[0]
+            key = "".join(f"'{part}': " for part in issue["loc"])
+            raise JobError(f"{self.status_file}: damaged: {key}{issue['msg']}") from error
+        except OSError as error:
             raise JobError(f"{self.status_file}: damaged: {error}") from error
+        if status.state not in STATES:
+            raise JobError(f"{self.status_file}: damaged: unknown state '{status.state}'")
         if status.state == "running" and not _is_alive(status):
             return replace(status, state="interrupted")
         return status
@@ -159,6 +164,7 @@ class JobDirectory:
             status = self.status()
             if status.state == "running" and status.pid != os.getpid():
                 raise self._busy(status)
+            remove_partial_files(self.path)
             yield
 
     def _busy(self, status: Status) -> JobBusyError:
@@ -169,7 +175,7 @@ class JobDirectory:
 def _is_alive(status: Status) -> bool:
     """Whether the process that wrote `status` still runs; across hosts its heartbeat decides."""
     if status.host != socket.gethostname():
-        return time.time() - status.heartbeat < HEARTBEAT_LIMIT
+        return abs(time.time() - status.heartbeat) < HEARTBEAT_LIMIT
     try:
         process = psutil.Process(status.pid)
         same_process: bool = abs(process.create_time() - status.process_start) < 1.0

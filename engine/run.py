@@ -11,6 +11,7 @@ from types import FrameType
 from typing import Any
 
 import numpy as np
+from xarray import Dataset
 
 from engine import PHYSICS_VERSION, backend
 from engine.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
@@ -110,12 +111,15 @@ class Run:
 
     def _begin(self) -> None:
         """Restore the last checkpoint, or start from the scene."""
-        progress = load_checkpoint(self.job, self.simulation)
+        progress, history = load_checkpoint(self.job, self.simulation), self._written_history()
+        if progress is not None and history is None and self.simulation.step > 0:
+            log.warning("history.nc is lost or damaged: started anew, to the same results")
+            self.simulation, progress = Simulation(self.scene), None
         if progress is None:
             self.simulation.start()
             log.info("started at t = %.6g s", self.simulation.time)
         else:
-            self._restore(progress)
+            self._restore(progress, history)
             log.info("resumed at t = %.6g s, step %d", self.simulation.time, self.simulation.step)
         first = self.history.rows[0] if self.history.rows else self._row()
         self.guard = Guard(self.scene, first, self.simulation.first_dt)
@@ -123,13 +127,19 @@ class Run:
         self._write_outputs()
         self._report("running")
 
-    def _restore(self, progress: dict[str, float]) -> None:
+    def _written_history(self) -> Dataset | None:
+        """What an earlier session wrote, always before its checkpoint; `None` where it cannot be read."""
+        try:
+            return read_dataset(self.job.history)
+        except JobError:
+            return None
+
+    def _restore(self, progress: dict[str, float], history: Dataset | None) -> None:
         self.history_due, self.snapshot_due = progress["history_due"], progress["snapshot_due"]
         self.wall_before = progress["wall_time"]
         self.cpu_before = progress["cpu_time"]
-        if self.job.history.exists():
-            dataset = read_dataset(self.job.history)
-            self.history = History.from_dataset(dataset.isel(time=dataset["step"] <= self.simulation.step))
+        if history is not None:
+            self.history = History.from_dataset(history.isel(time=history["step"] <= self.simulation.step))
 
     def _loop(self) -> None:
         steps, since = self.simulation.step, time.monotonic()

@@ -1,7 +1,9 @@
 """Files that are either whole or absent: written under another name, flushed to disk, then renamed."""
 
+import errno
 import json
 import os
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,16 +13,39 @@ import xarray as xr
 
 from engine.errors import JobError
 
+FULL = 1 << 20
+"""Free bytes below which a disk counts as full."""
+
 
 def write_atomically(path: Path, write: Callable[[Path], None]) -> None:
-    """Let `write` fill a neighbour of `path`, then move it there; on any failure `path` stays as it was."""
+    """Let `write` fill a neighbour of `path`, then move it there; on any failure `path` stays as it was.
+
+    Raises:
+        OSError: it cannot be written; names `path` and the cause.
+    """
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
         write(partial)
         with partial.open("rb") as stream:
             os.fsync(stream.fileno())
         partial.replace(path)
+    except (OSError, RuntimeError) as error:  # the latter is netCDF's word for any trouble with a disk
+        raise _cause(error, path) from error
     finally:
+        partial.unlink(missing_ok=True)
+
+
+def _cause(error: OSError | RuntimeError, path: Path) -> OSError:
+    """What kept a file from being written; netCDF gives a full disk many names."""
+    code = error.errno if isinstance(error, OSError) and error.errno else errno.EIO
+    if code == errno.ENOSPC or shutil.disk_usage(path.parent).free < FULL:
+        return OSError(errno.ENOSPC, "cannot be written, the disk is full: free some space", str(path))
+    return OSError(code, f"cannot be written: {getattr(error, 'strerror', None) or error}", str(path))
+
+
+def remove_partial_files(directory: Path) -> None:
+    """Remove what processes left that were killed while they wrote; nobody else may write there now."""
+    for partial in directory.glob(".*.partial"):
         partial.unlink(missing_ok=True)
 
 

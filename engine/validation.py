@@ -11,15 +11,18 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from engine.errors import SceneError
 from engine.mistakes import explain
 
+DEEPEST = 20
+"""Tables and lists inside each other that an input file may hold."""
 
-def _no_switch(value: Any) -> Any:
-    if isinstance(value, bool):
-        raise ValueError("Input should be a number, not true or false")
+
+def _numeral(value: Any) -> Any:
+    if isinstance(value, bool | str):
+        raise ValueError(f"Input should be a number, not {'text' if isinstance(value, str) else 'true or false'}")
     return value
 
 
-Number = Annotated[float, BeforeValidator(_no_switch)]
-Whole = Annotated[int, BeforeValidator(_no_switch)]
+Number = Annotated[float, BeforeValidator(_numeral)]
+Whole = Annotated[int, BeforeValidator(_numeral)]
 # -0.0 + 0.0 is 0.0: one text for one meaning
 Finite = Annotated[Number, Field(allow_inf_nan=False), AfterValidator(lambda value: value + 0.0)]
 Positive = Annotated[Finite, Field(gt=0.0)]
@@ -57,11 +60,22 @@ def read_table(path: Path) -> dict[str, Any]:
         table = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(f"{path}: cannot be read: {error}") from error
-    except (tomllib.TOMLDecodeError, json.JSONDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise SceneError(f"{path}: not valid {path.suffix.lstrip('.').upper() or 'TOML'}: {error}") from error
     if not isinstance(table, dict):
         raise SceneError(f"{path}: expected a table of keys at the top level, found {type(table).__name__}")
+    if _is_deep(table):
+        raise SceneError(f"{path}: more than {DEEPEST} tables or lists inside each other; no key is so deep")
     return table
+
+
+def _is_deep(content: Any) -> bool:
+    """Whether tables and lists lie inside each other beyond all use."""
+    level = [content]
+    for _ in range(DEEPEST):
+        inner = (part.values() if isinstance(part, dict) else part for part in level)
+        level = [value for values in inner for value in values if isinstance(value, dict | list)]
+    return bool(level)
 
 
 def validate(model: type[Model], table: dict[str, Any], source: str) -> Model:

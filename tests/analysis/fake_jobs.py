@@ -8,6 +8,7 @@ import xarray as xr
 
 from engine.collision import Collision
 from engine.jobdir import JobDirectory, Status
+from engine.scene import scene_in
 from engine.storage import write_dataset, write_json
 
 RHO0 = 2700.0
@@ -38,7 +39,9 @@ def particles(position: np.ndarray, spacing: float, velocity: np.ndarray | None 
             "body": ("particle", (position[:, 0] > np.median(position[:, 0])).astype(np.int32)),
         },
         coords={"space": ["x", "y", "z"]},
-        attrs={"time": 0.0, "step": 100, "spacing": spacing, "dx": 2 * spacing, "physics_version": 1} | attrs,
+        attrs={"time": 0.0, "step": 100, "spacing": spacing, "dx": 2 * spacing}
+        | {"physics_version": 1, "scene_hash": "none"}
+        | attrs,
     )
 
 
@@ -78,7 +81,7 @@ def write_job(
     job.write_status(Status(state=state, reason=reason, step=100, wall_time=12.5, cpu_time=20.5))
     write_dataset(job.history, history(np.linspace(-500.0, collision.end_time, 20), 1e-9))
     if final is not None:
-        write_dataset(job.final, final)
+        write_dataset(job.final, final.assign_attrs(scene_hash=scene_in(path).hash()))
 
 
 def write_campaign(directory: Path, coords: dict[str, list[Any]], jobs: list[tuple[dict[str, Any], Collision]]) -> None:

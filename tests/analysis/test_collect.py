@@ -84,6 +84,8 @@ def make_nan(job: Path) -> None:
     write_dataset(job / "final.nc", broken)
 
 
+TIME = ("corrupt", "status.json: damaged: 'wall_time'")
+
 FAULTS = {
     "truncated": (truncate, "corrupt", "final.nc"),
     "gone": (lambda job: (job / "final.nc").unlink(), "corrupt", "final.nc"),
@@ -102,6 +104,15 @@ FAULTS = {
     "other physics": (lambda job: write_dataset(job / "final.nc", remnant(physics_version=7)), "corrupt", "version 7"),
     "status": (lambda job: (job / "status.json").write_text("{"), "corrupt", "status.json"),
     "status of a list": (lambda job: (job / "status.json").write_text("[]"), "corrupt", "status.json"),
+    "status with a list": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": [1]}'), *TIME),
+    "status with a text": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": "x"}'), *TIME),
+    "state": (lambda job: (job / "status.json").write_text('{"state": "well"}'), "corrupt", "unknown state 'well'"),
+    "other scene": (
+        lambda job: write_dataset(job / "final.nc", remnant().assign_attrs(scene_hash="other")),
+        "corrupt",
+        "not of the scene",
+    ),
+    "advice": (truncate, "corrupt", "delete the directory of this job"),
     "scene": (lambda job: (job / "scene.json").write_text("{}"), "corrupt", "scene.json"),
     "no history": (lambda job: (job / "history.nc").unlink(), "corrupt", "history.nc"),
     "short history": (

@@ -107,6 +107,15 @@ def test_no_two_lines_look_alike(tmp_path: Path, velocities: list[float]) -> Non
     assert len({look[0] for look in looks}) == (4 if len(velocities) == 1 else 2)
 
 
+def test_an_axis_of_end_times_is_a_series_and_the_times_of_cases_are_not(tmp_path: Path) -> None:
+    coords = {"velocity": [200.0], "angle": [5.0, 15.0], "end_time": [500.0, 1000.0]}
+    groups = list(series(collect(campaign(tmp_path, coords, grid(coords), 0))))
+    assert [name for name, _ in groups] == ["end_time 500", "end_time 1000"]
+    cases = [("a", collision(angle=5.0)), ("b", collision(angle=15.0, end_time=500.0))]
+    write_campaign(tmp_path, {"case": ["a", "b"]}, [({"case": name}, case) for name, case in cases])
+    assert len(list(series(collect(tmp_path)))) == 1
+
+
 def test_reasons_name_the_job(tmp_path: Path) -> None:
     coords = {"velocity": [100.0], "angle": [5.0, 15.0]}
     campaign(tmp_path, coords, grid(coords), 1)

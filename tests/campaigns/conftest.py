@@ -5,10 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
 import campaigns.app
 import campaigns.job
 import campaigns.run
+from tests.campaigns.sound import SOUND
 
 STUDY = """
 name = "{name}"
@@ -59,7 +61,12 @@ def runs(tmp_path: Path) -> Path:
 def collected(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     """The campaign directories that were collected."""
     directories: list[Path] = []
-    monkeypatch.setattr(campaigns.app, "collect_results", directories.append)
+
+    def nothing_unsound(directory: Path) -> xr.Dataset:
+        directories.append(directory)
+        return SOUND
+
+    monkeypatch.setattr(campaigns.app, "collect_results", nothing_unsound)
     return directories
 
 

@@ -31,6 +31,13 @@ BAD_STUDIES = {
     "infinite velocity": (HEAD + "[axes]\nvelocity = [inf]\nangle = [5]\n", ["'velocity'", "finite"]),
     "word as velocity": (HEAD + "[axes]\nvelocity = ['fast']\nangle = [5]\n", ["'velocity'", "number", "fast"]),
     "velocity without orbit": (HEAD + "[axes]\nvelocity = [1e-300]\nangle = [5]\n", ["no scene can be built"]),
+    "case inside an axis": (
+        HEAD + "[axes]\nviscosity.shear = [1, 2]\n[[cases]]\nvelocity = 100\nangle = 5\nviscosity = false\n",
+        ["case 1", "'viscosity' and 'axes.viscosity.shear' are parts of each other"],
+    ),
+    "deep tables": (HEAD + GRID + f"[collision.{'a.' * 300}a]\nb = 1\n", ["more than 20 tables"]),
+    "deep lists": (HEAD + GRID + f"x = {'[' * 5000}{']' * 5000}\n", ["not valid TOML"]),
+    "huge number": (HEAD + f"[collision]\nparticles = {'9' * 5000}\n" + GRID, ["not valid TOML", "4300"]),
     "no particles": (HEAD + "[collision]\nparticles = 0\n" + GRID, ["'particles'", "1", "0"]),
     "half a particle": (HEAD + "[collision]\nparticles = 10.5\n" + GRID, ["'particles'", "10.5"]),
     "ends before contact": (HEAD + "[collision]\nend_time = -1\n" + GRID, ["end_time", "-1"]),
@@ -47,7 +54,7 @@ BAD_STUDIES = {
     "repeated value": (HEAD + "[axes]\nvelocity = [100, 100.0]\nangle = [5]\n", ["axes.velocity", "twice"]),
     "repeated value as text": (
         HEAD + "[axes]\nvelocity = [100, '100']\nangle = [5]\n",
-        ["velocity 100.0", "same simulation"],
+        ["velocity", "number, not text", "'100'"],
     ),
     "axis without effect": (
         HEAD + "[collision]\nfriction = 0.5\n[collision.fracture]\n"
@@ -121,7 +128,7 @@ def test_unknown_study(command, runs):
 
 
 def test_a_study_unlike_any_other_names_those_there_are(command):
-    assert "; known studies: accuracy, quick, sugiura2018, talk2025" in command("run", "zzzz").err
+    assert "; known studies: accuracy, friction, quick, sugiura2018, talk2025" in command("run", "zzzz").err
 
 
 def test_directory_as_study(command, tmp_path):
@@ -180,6 +187,12 @@ def test_damaged_campaign_file(command, write_study, runs):
         result = command(verb, write_study())
         assert result.code == 2
         assert "campaign.json: not valid JSON" in result.err
+        assert "delete this file and run the study again" in result.err
+    (runs / "small" / "campaign.json").unlink()
+    before = {path: path.read_bytes() for path in runs.glob("small/jobs/*/*")}
+    assert command("run", write_study()).code == 0
+    assert {path: path.read_bytes() for path in before} == before
+    assert (runs / "small" / "campaign.json").is_file()
 
 
 @pytest.mark.parametrize("verb", ["status", "collect"])

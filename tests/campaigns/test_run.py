@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from dask.distributed import LocalCluster
 
 Tree = Callable[[Path], dict[str, bytes]]
@@ -66,6 +67,22 @@ def test_new_axis_keeps_finished_jobs(command, write_study, runs):
     command("run", write_study(angle="[5]\nseed = [1, 2]"))
     assert starts(runs, "v0100_a05") == ["from step 0"]
     assert len(list(runs.glob("small/jobs/*"))) == 4
+
+
+def test_a_setting_that_becomes_an_axis_keeps_finished_jobs(command, write_study, runs):
+    command("run", write_study(collision="radius = 1e4"))
+    assert command("run", write_study(angle="[5]\nradius = [1e4, 2e4]")).code == 0
+    assert starts(runs, "v0100_a05") == ["from step 0"]
+    assert len(list(runs.glob("small/jobs/*"))) == 4
+
+
+def test_a_job_that_says_done_and_is_damaged_is_told(command, write_study, monkeypatch):
+    told = {"job": ["one", "two"], "state": ["done", "corrupt"], "reason": ["", "final.nc is cut"]}
+    damaged = xr.Dataset({name: ("case", texts) for name, texts in told.items()}, {"case": ["a", "b"]})
+    monkeypatch.setattr("campaigns.app.collect_results", lambda directory: damaged)
+    result = command("run", write_study())
+    assert result.code == 1
+    assert "two: corrupt: final.nc is cut" in result.out and "one:" not in result.out
 
 
 def test_error_bars_keep_finished_jobs(command, write_study, runs):

@@ -74,13 +74,31 @@ def test_two_threads_give_the_same_bits_as_one(tmp_path: Path, reference: Path) 
     assert_same_results(directory, reference)
 
 
-def test_a_damaged_checkpoint_falls_back_to_the_one_before(tmp_path: Path, reference: Path) -> None:
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda path: path.write_bytes(path.read_bytes()[:1000]),
+        lambda path: write_dataset(path, read_dataset(path).isel(particle=slice(0, 50))),
+        lambda path: write_dataset(path, read_dataset(path).drop_attrs()),
+    ],
+    ids=["truncated", "particles", "attributes"],
+)
+def test_a_damaged_checkpoint_falls_back_to_the_one_before(tmp_path: Path, reference: Path, damage) -> None:
     directory = write_job(tmp_path / "job")
     start_and_stop(directory, signal.SIGKILL)
     job = JobDirectory(directory)
-    newest = job.checkpoint if job.checkpoint.exists() else job.previous_checkpoint
-    newest.write_bytes(newest.read_bytes()[:1000])
+    damage(job.checkpoint if job.checkpoint.exists() else job.previous_checkpoint)
     assert run_engine(directory).returncode == 0
+    assert_same_results(directory, reference)
+
+
+@pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_bytes(path.read_bytes()[:1000])])
+def test_a_run_whose_history_is_lost_starts_anew(tmp_path: Path, reference: Path, damage) -> None:
+    directory = write_job(tmp_path / "job")
+    start_and_stop(directory, signal.SIGTERM)
+    damage(JobDirectory(directory).history)
+    assert run_engine(directory).returncode == 0
+    assert "history.nc is lost or damaged" in (directory / "log.txt").read_text()
     assert_same_results(directory, reference)
 
 

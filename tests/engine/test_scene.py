@@ -154,7 +154,7 @@ def test_false_leaves_a_part_out_as_null_does_since_toml_has_no_null(tmp_path: P
 
 
 def test_equal_scenes_have_equal_hashes_and_others_not():
-    assert scene(end_time=100).hash() == scene(end_time=100.0).hash() == scene(end_time="1e2").hash()
+    assert scene(end_time=100).hash() == scene(end_time=100.0).hash()
     assert scene(start_time=-0.0).hash() == scene(start_time=0.0).hash()
     assert scene(seed=1).hash() != scene(seed=2).hash()
     assert scene(end_time=10.000000001).hash() != scene(end_time=10.0).hash()

@@ -1,16 +1,18 @@
+import errno
 import json
 import multiprocessing
 import os
 import re
 import signal
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from engine.errors import JobError
-from engine.storage import is_finite, read_dataset, write_atomically, write_dataset, write_json
+from engine.storage import is_finite, read_dataset, remove_partial_files, write_atomically, write_dataset, write_json
 
 
 def dataset(count: int = 50) -> xr.Dataset:
@@ -19,6 +21,40 @@ def dataset(count: int = 50) -> xr.Dataset:
         {"x": (("particle", "space"), generator.normal(size=(count, 3))), "body": ("particle", np.arange(count))},
         attrs={"time": 1.5, "note": "text"},
     )
+
+
+def failing(error: Exception):
+    def write(partial: Path) -> None:
+        partial.write_text("half")
+        raise error
+
+    return write
+
+
+@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), RuntimeError("NetCDF: HDF error")])
+def test_a_full_disk_is_named_whatever_netcdf_calls_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
+):
+    monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=100))
+    with pytest.raises(OSError, match="the disk is full: free some space") as raised:
+        write_atomically(tmp_path / "file", failing(error))
+    assert raised.value.errno == errno.ENOSPC and raised.value.filename == str(tmp_path / "file")
+    assert not list(tmp_path.iterdir())
+
+
+def test_other_trouble_keeps_its_name(tmp_path: Path):
+    with pytest.raises(OSError, match="cannot be written: NetCDF: HDF error") as raised:
+        write_atomically(tmp_path / "file", failing(RuntimeError("NetCDF: HDF error")))
+    assert raised.value.filename == str(tmp_path / "file")
+    with pytest.raises(PermissionError):
+        write_atomically(tmp_path / "file", failing(PermissionError(errno.EACCES, "not yours")))
+
+
+def test_what_killed_writers_left_is_removed_and_nothing_else(tmp_path: Path):
+    for name in (".final.nc.77.partial", "final.nc", "notes.partial"):
+        (tmp_path / name).write_text("x")
+    remove_partial_files(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"final.nc", "notes.partial"}
 
 
 def test_a_new_file_takes_the_place_of_the_old_one_as_a_whole(tmp_path: Path):
