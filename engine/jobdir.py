@@ -180,5 +180,5 @@ def _is_alive(status: Status) -> bool:
         process = psutil.Process(status.pid)
         same_process: bool = abs(process.create_time() - status.process_start) < 1.0
         return same_process and process.status() != psutil.STATUS_ZOMBIE
-    except psutil.Error:
+    except (psutil.Error, ValueError, OverflowError):  # the latter two: no number of a process
         return False

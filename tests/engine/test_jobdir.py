@@ -155,3 +155,20 @@ def test_a_claim_ends_with_its_block_even_if_that_fails(job: JobDirectory):
         raise ZeroDivisionError
     with job.claim(), pytest.raises(JobBusyError), job.claim():
         pass
+
+
+@pytest.mark.parametrize("pid", [-1, 10**30])
+def test_what_is_no_process_does_not_run(tmp_path: Path, pid: int) -> None:
+    job = JobDirectory(tmp_path)
+    job.write_status(Status(state="running"))
+    content = json.loads(job.status_file.read_text())
+    job.status_file.write_text(json.dumps(content | {"pid": pid}))
+    assert job.status().state == "interrupted"
+
+
+def test_a_heartbeat_from_the_future_is_none(tmp_path: Path) -> None:
+    job = JobDirectory(tmp_path)
+    job.write_status(Status(state="running"))
+    content = json.loads(job.status_file.read_text())
+    job.status_file.write_text(json.dumps(content | {"host": "elsewhere", "heartbeat": time.time() + 1e6}))
+    assert job.status().state == "interrupted"
