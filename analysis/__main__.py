@@ -10,7 +10,7 @@ from analysis.plots import plots as draw
 from analysis.remnant import latest, measure
 from analysis.tables import printed, reasons, shape_table, unresolved
 from analysis.variables import OUTCOMES
-from engine.errors import JobError, RunFault, SceneError
+from engine.errors import JobError, RunFault, SceneError, in_words
 from engine.jobdir import JobDirectory
 
 app = typer.Typer(help=__doc__, add_completion=False, no_args_is_help=True)
@@ -55,7 +55,7 @@ def main() -> None:
         typer.echo(str(error), err=True)
         sys.exit(2)
     except OSError as error:
-        typer.echo(f"{error.filename}: {error.strerror}; results of jobs are kept, run again", err=True)
+        typer.echo(f"{in_words(error)}; results of jobs are kept, run again", err=True)
         sys.exit(2)
 
 

@@ -28,9 +28,9 @@ def plots(campaign_directory: Path) -> tuple[xr.Dataset, list[Path]]:
     table, page = campaign_directory / "shape_table.csv", campaign_directory / "report.html"
     write_shape_table(results, table)
     drawn = {
+        "remnants": gallery(results, directories),
         "shape_vs_angle": shape_versus_angle(results),
         "maps": maps(results),
-        "remnants": gallery(results, directories),
         "conservation": conservation(results, directories),
     }
     paths = [figures / f"{name}.png" for name in drawn]

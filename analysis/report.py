@@ -14,7 +14,7 @@ from analysis.campaign import Campaign
 from analysis.figures.style import Directories
 from analysis.tables import as_shown, reasons, shape_table, unresolved
 from engine.jobdir import JobDirectory
-from engine.storage import write_atomically
+from engine.storage import write_text
 
 CAPTIONS = {
     "remnants": "The largest remnant of every collision, along its shortest axis and edge-on.",
@@ -22,7 +22,7 @@ CAPTIONS = {
     "maps": "Mass and axis ratios of the largest remnant over velocity and angle.",
     "conservation": "Energies of one run, and drifts of the conserved quantities of all.",
 }
-"""Figures in the order of the page."""
+"""What each figure shows."""
 
 DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
 
@@ -40,7 +40,7 @@ def write_report(
         campaign: its description.
         results: its results.nc.
         directories: its jobs.
-        figures: PNG files, named as in `CAPTIONS`.
+        figures: PNG files in the order of the page, named as in `CAPTIONS`.
         path: where the page is written.
     """
     text = _page.render(
@@ -48,21 +48,13 @@ def write_report(
         counts=results["state"].to_series().value_counts().to_dict(),
         table=_html(shape_table(results)),
         notes=[*unresolved(results), *reasons(results)],
-        figures=[(CAPTIONS[figure.stem], _embedded(figure)) for figure in sorted(figures, key=_rank)],
+        figures=[(CAPTIONS[figure.stem], _embedded(figure)) for figure in figures],
         drifts=[_largest(results[name]) for name in DRIFTS],
         cpu_hours=float(results["cpu_time"].sum()) / 3600.0,
         settings={name: _plain(value) for name, value in results.attrs.items()},
         sessions=_sessions(directories),
     )
-    write_atomically(path, lambda partial: _write(partial, text))
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
-
-
-def _rank(figure: Path) -> int:
-    return list(CAPTIONS).index(figure.stem)
+    write_text(path, text)
 
 
 def _embedded(figure: Path) -> str:

@@ -22,7 +22,7 @@ from campaigns.plan import decide
 from campaigns.run import Run
 from campaigns.state import CORRUPT, JobState, states
 from campaigns.study import Study, find_study, read_study
-from engine.errors import JobError, SceneError
+from engine.errors import JobError, SceneError, in_words
 
 
 class Arch(Enum):
@@ -63,8 +63,7 @@ def main() -> None:
     except JobError as error:
         sys.exit(_complain(str(error), 1))
     except OSError as error:
-        name = f"{error.filename}: " if error.filename else ""
-        sys.exit(_complain(f"{name}{error.strerror or error}; what is finished is kept, run again to go on", 1))
+        sys.exit(_complain(f"{in_words(error)}; what is finished is kept, run again to go on", 1))
 
 
 @app.command("run", help="Run every unfinished job of a study, then collect the results.")

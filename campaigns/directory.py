@@ -8,7 +8,7 @@ from campaigns.campaign import Campaign, Job
 from campaigns.expansion import scene_of
 from campaigns.keys import flatten
 from engine.errors import SceneError
-from engine.storage import write_atomically, write_json
+from engine.storage import write_json, write_text
 from engine.validation import read_table, validate
 
 _WAY_OUT = "choose another results directory with RUNS=DIR (--runs DIR)"
@@ -45,11 +45,11 @@ class CampaignDirectory:
         Raises:
             SceneError: the directory belongs to another study, other settings or another physics version.
         """
+        names = {name[-HASH_LENGTH:]: name for name in self._job_names()}
         if self.file.is_file():
             self._require_same(self.read(), campaign)
-        elif self.path.exists() and not self._holds_jobs_of(campaign):
-            self._require_empty()
-        names = {name[-HASH_LENGTH:]: name for name in self._job_names()}
+        elif self.path.exists() and not any(job.id[-HASH_LENGTH:] in names for job in campaign.jobs):
+            self._require_empty()  # jobs of this campaign are its own, also when its description is lost
         jobs = tuple(job.called(names.get(job.id[-HASH_LENGTH:], job.id)) for job in campaign.jobs)
         return campaign.model_copy(update={"jobs": jobs})
 
@@ -65,18 +65,7 @@ class CampaignDirectory:
         if path.is_file():
             return
         path.parent.mkdir(parents=True, exist_ok=True)
-        content = scene_of(job.collision, job.id).canonical().encode()
-
-        def write(partial: Path) -> None:
-            partial.write_bytes(content)
-
-        write_atomically(path, write)
-
-    def _holds_jobs_of(self, campaign: Campaign) -> bool:
-        """Whether jobs of this campaign are here, also when its description is lost."""
-        return not {job.id[-HASH_LENGTH:] for job in campaign.jobs}.isdisjoint(
-            name[-HASH_LENGTH:] for name in self._job_names()
-        )
+        write_text(path, scene_of(job.collision, job.id).canonical())
 
     def _job_names(self) -> list[str]:
         jobs = self.path / "jobs"

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from engine.errors import JobBusyError, JobError, RunFault, SceneError
+from engine.errors import JobBusyError, JobError, RunFault, SceneError, in_words
 from engine.jobdir import JobDirectory, Status
 from engine.mistakes import suggestion
 from engine.precision import choose
@@ -54,8 +54,7 @@ def run(
     except (SceneError, JobError) as error:
         _exit(str(error), BAD_INPUT)
     except OSError as error:
-        place, reason = error.filename or directory, error.strerror or error
-        _exit(f"{place}: {reason}; the last checkpoint is intact, run again to resume", FAILED)
+        _exit(f"{in_words(error, directory)}; the last checkpoint is intact, run again to resume", FAILED)
     if status.state != "done":
         _exit(f"{directory}: {status.state}: {status.reason}", FAILED if status.state == "failed" else INTERRUPTED)
     typer.echo(f"{directory}: done after {status.step} steps")

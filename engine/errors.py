@@ -19,6 +19,12 @@ class JobBusyError(JobError):
     """Another process runs the job."""
 
 
+def in_words(error: OSError, place: object = "") -> str:
+    """The file and what is wrong with it, in one line; `place` stands in where the error names none."""
+    where = error.filename or place
+    return f"{where}: {error.strerror or error}" if where else f"{error.strerror or error}"
+
+
 class RunFault(RuntimeError):
     """A simulation, or what it left, holds values outside the range in which its equations hold."""
 

@@ -51,11 +51,15 @@ def remove_partial_files(directory: Path) -> None:
 
 def write_json(path: Path, content: dict[str, Any]) -> None:
     """Write `content` as indented JSON."""
-    text = json.dumps(content, indent=1, sort_keys=True) + "\n"
-    write_atomically(path, lambda partial: _write_text(partial, text))
+    write_text(path, json.dumps(content, indent=1, sort_keys=True) + "\n")
 
 
-def _write_text(path: Path, text: str) -> None:
+def write_text(path: Path, text: str) -> None:
+    """Write a text in UTF-8."""
+    write_atomically(path, lambda partial: _fill(partial, text))
+
+
+def _fill(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
