@@ -51,8 +51,6 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
         particles = read_particles(job.final)
         if particles.physics_version != physics_version:
             raise JobError(f"computed with physics version {particles.physics_version}, not {physics_version}")
-        if particles.scene_hash != scene_in(job.path).hash():
-            raise JobError(f"{job.final}: is not of the scene in this directory")
         return Outcome("done", "", measure(job, particles))
     except RunFault as fault:
         return Outcome("failed", _line(fault), {})
@@ -83,9 +81,11 @@ def measure(job: JobDirectory, particles: Particles) -> Numbers:
         particles: its final state, or an earlier one.
 
     Raises:
-        JobError, SceneError: a file of the job cannot be read.
+        JobError, SceneError: a file of the job cannot be read, or is of another scene.
     """
     scene, status = scene_in(job.path), job.status()
+    if particles.scene_hash != scene.hash():
+        raise JobError(f"{job.path}: holds particles that are not of the scene in this directory")
     labels = clumps_of(particles)
     remnant = particles.select(labels == 0)
     change = shape_change(remnant, job)

@@ -12,7 +12,7 @@ from analysis.campaign import read_campaign
 from analysis.collect import collect
 from analysis.figures.style import save
 from engine.errors import SceneError
-from engine.storage import write_atomically, write_dataset
+from engine.storage import write_dataset, write_text
 
 HEADS = {"mass_ratio": "M_lr/M_t", "b_over_a": "b/a", "c_over_a": "c/a", "bulk_density": "density [kg/m3]"}
 DECIMALS = {"mass_ratio": 3, "b_over_a": 3, "c_over_a": 3, "bulk_density": 0}
@@ -33,11 +33,7 @@ def report(campaign_directory: Path) -> tuple[str, list[Path]]:
     files = [campaign_directory / f"accuracy.{kind}" for kind in ("nc", "png", "md")]
     write_dataset(files[0], found)
     save(error_against_cost(found), files[1])
-
-    def write(partial: Path) -> None:
-        partial.write_text(text, encoding="utf-8")
-
-    write_atomically(files[2], write)
+    write_text(files[2], text)
     return text, files
 
 

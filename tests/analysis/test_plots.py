@@ -16,6 +16,7 @@ from analysis.figures.surface import picture
 from analysis.plots import plots
 from analysis.tables import printed, reasons, series, shape_table
 from engine.collision import Collision
+from engine.scene import scene_in
 from engine.storage import write_dataset
 from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
@@ -152,7 +153,8 @@ def test_the_command_line_prints_one_remnant_even_before_it_is_done(tmp_path: Pa
     (job / "snapshots").mkdir()
     points, spacing = lattice_ellipsoid((2e5, 1e5, 8e4), 150)
     for time in (300.0, 400.0):
-        write_dataset(job / f"snapshots/{time:.3f}.nc", particles(points, spacing, time=time))
+        snapshot = particles(points, spacing, time=time, scene_hash=scene_in(job).hash())
+        write_dataset(job / f"snapshots/{time:.3f}.nc", snapshot)
     told = CliRunner().invoke(app, ["remnant", str(job)])
     assert "not done: last snapshot, 400 s after contact" in told.output
 
