@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from analysis.particles import Array, Integers, Particles
-from engine.orbit import G
+from engine.constants import G_NEWTON
 
 LINKING_LENGTH = 1.5
 """Distance within which two particles are friends, in particle spacings h."""
@@ -94,4 +94,4 @@ def _specific_energy(clumps: Clumps, bound: NDArray[np.bool_]) -> Array:
     distance = np.linalg.norm(clumps.position - np.average(clumps.position, axis=0, weights=weight), axis=1)
     speed = np.linalg.norm(clumps.velocity - np.average(clumps.velocity, axis=0, weights=weight), axis=1)
     with np.errstate(divide="ignore"):
-        return np.asarray(0.5 * speed**2 - G * (total + clumps.mass) / distance)
+        return np.asarray(0.5 * speed**2 - G_NEWTON * (total + clumps.mass) / distance)

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-EDGE = 4
-"""Cells along an edge of a block, and nodes along an edge of a tile."""
+from engine.constants import BLOCK_EDGE
 
 HALF_RANGE = 1 << 20
 """Blocks per axis on either side of the origin."""
@@ -44,7 +43,7 @@ class Blocks:
 
 def out_of_range(x: NDArray[np.floating], dx: float) -> NDArray[np.bool_]:
     """Which particles block coordinates cannot reach, or are nowhere; arguments as `block_of`."""
-    return np.asarray(~(np.abs(x / (EDGE * dx)) < HALF_RANGE - 3).all(axis=1))
+    return np.asarray(~(np.abs(x / (BLOCK_EDGE * dx)) < HALF_RANGE - 3).all(axis=1))
 
 
 def block_of(x: NDArray[np.floating], dx: float) -> Integers:
@@ -54,13 +53,13 @@ def block_of(x: NDArray[np.floating], dx: float) -> Integers:
         x: positions [m], none of them out of range, shape [particle_count, 3].
         dx: grid spacing [m].
     """
-    return np.floor((x / dx - 0.5) / EDGE).astype(np.int32)
+    return np.floor((x / dx - 0.5) / BLOCK_EDGE).astype(np.int32)
 
 
 def wrap(x: NDArray[np.float64], block: Integers, dx: float, period: Period) -> tuple[NDArray[np.float64], Integers]:
     """Positions [m] and blocks moved by whole periods into the first one of each periodic axis."""
     turns = np.where(np.array(period) > 0, block // np.maximum(period, 1), 0)
-    return x - turns * period * (EDGE * dx), (block - turns * period).astype(np.int32)
+    return x - turns * period * (BLOCK_EDGE * dx), (block - turns * period).astype(np.int32)
 
 
 def build_blocks(block: Integers, period: Period = UNBOUNDED) -> Blocks:

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from engine.history import Row
+from engine.constants import G_NEWTON
+from engine.ledger import Row
 from engine.materials import Material
-from engine.orbit import G
 from engine.scene import Scene
 
 LARGEST_COMPRESSION = 1e6
@@ -32,7 +32,7 @@ def _fall(scene: Scene) -> float:
     gravity = scene.physics.gravity
     if gravity:
         mass = sum(body.mass for body in scene.bodies)
-        return math.sqrt(3.0 * G * mass / (gravity.softening * scene.spacing))
+        return math.sqrt(3.0 * G_NEWTON * mass / (gravity.softening * scene.spacing))
     pull = float(np.linalg.norm(scene.physics.uniform_gravity or 0.0))
     return pull * (scene.end_time - scene.start_time)
 

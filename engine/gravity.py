@@ -8,8 +8,8 @@ import taichi as ti
 from numpy.typing import NDArray
 
 from engine.backend import Real, capacity, on_gpu, overwrite
+from engine.constants import G_NEWTON
 from engine.net_effect import NetEffect, without_net_effect
-from engine.orbit import G
 
 LANES = 8
 """Targets that one CPU thread serves at once: as many doubles as the widest registers hold."""
@@ -84,8 +84,8 @@ class SelfGravity(ABC):
         places = self.arrange(x)
         taken = places >= 0
         particle = np.where(taken, places, ~places)
-        length, mu = _power_of_two(np.abs(x).max()), _power_of_two(G * mass.max())
-        sources = (*(x[particle] / length).T, np.where(taken, G * mass[particle] / mu, 0.0))
+        length, mu = _power_of_two(np.abs(x).max()), _power_of_two(G_NEWTON * mass.max())
+        sources = (*(x[particle] / length).T, np.where(taken, G_NEWTON * mass[particle] / mu, 0.0))
         self.radius[None] = self.ball / length
         for field, values in zip((self.x, self.y, self.z, self.mu), sources, strict=True):
             overwrite(field, values)

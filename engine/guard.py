@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from engine.backend import EPSILON
 from engine.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift, speed_scale
 from engine.errors import SMALLER_STEPS, stop
-from engine.history import Row
+from engine.ledger import Row
 from engine.particles import Arrays, Particles
 from engine.scene import Scene
 from engine.transfer import LARGEST_INCREMENT

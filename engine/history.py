@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-Row = dict[str, NDArray[np.float64]]
+from engine.ledger import Row
 
 ATTRIBUTES = {
     "time": ("time after point-mass contact", "s"),

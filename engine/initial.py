@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.body import Body, Box, Solid
+from engine.constants import G_NEWTON
 from engine.cuboid import box_points
 from engine.flaws import Flaws, draw_flaws, join
 from engine.materials import Material
-from engine.orbit import G
 from engine.particles import Arrays
 from engine.scene import Scene
 from engine.sphere import sphere_points
@@ -80,7 +80,7 @@ def _points(scene: Scene, index: int, body: Body | Box) -> NDArray[np.float64]:
 def _hydrostatic_pressure(body: Body, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """P(r) = (2/3) pi G rho^2 (R^2 - r^2) [Pa] (engine/physics.md, section 8)."""
     square = np.einsum("ij,ij->i", points, points)
-    pressure = 2.0 / 3.0 * np.pi * G * body.material.rho0**2 * np.maximum(body.radius**2 - square, 0.0)
+    pressure = 2.0 / 3.0 * np.pi * G_NEWTON * body.material.rho0**2 * np.maximum(body.radius**2 - square, 0.0)
     return np.asarray(pressure)
 
 

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from engine.particles import Arrays
 
 Vector = NDArray[np.float64]
+Row = dict[str, NDArray[np.float64]]
+"""One row of the history: a name and its value."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ def elastic_energy(state: Arrays, rho0: Vector, bulk: Vector, shear: Vector) -> 
     return np.asarray(state["mass"] / rho0 * density)
 
 
-def as_row(totals_now: Totals, **others: float) -> dict[str, NDArray[np.float64]]:
+def as_row(totals_now: Totals, **others: float) -> Row:
     """One row of the history."""
     row = {**asdict(totals_now), "total_energy": totals_now.total_energy, **others}
     return {name: np.asarray(value, dtype=np.float64) for name, value in row.items()}

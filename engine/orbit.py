@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-G = 6.6743e-11
-"""Gravitational constant [m^3 kg^-1 s^-2] (CODATA 2018)."""
+from engine.constants import G_NEWTON
 
 NEAREST_START = 1.1
 """A bound pair whose apocentre is nearer than this many contact distances starts at this distance instead."""
@@ -42,7 +41,7 @@ def approach(position: Array, velocity: Array, total_mass: float, separation: fl
         total_mass: mass of both bodies [kg]; 0 for bodies without gravity.
         separation: distance of the centres at the start [m].
     """
-    mu = G * total_mass
+    mu = G_NEWTON * total_mass
     farthest = apocentre(position, velocity, mu)
     if farthest <= NEAREST_START * float(np.linalg.norm(position)):
         return _straight_back(position, velocity)

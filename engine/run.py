@@ -17,9 +17,9 @@ from engine import PHYSICS_VERSION, backend
 from engine.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
 from engine.errors import Fault, GuardFault, JobError, SceneError
 from engine.guard import Guard
-from engine.history import History, Row
+from engine.history import History
 from engine.jobdir import HEARTBEAT_PERIOD, JobDirectory, Status
-from engine.ledger import as_row
+from engine.ledger import Row, as_row
 from engine.provenance import record_session
 from engine.scene import Scene, scene_in
 from engine.simulation import Simulation

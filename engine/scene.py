@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from engine.blocks import EDGE
 from engine.body import MOST_PARTICLES, Body, Box
+from engine.constants import BLOCK_EDGE
 from engine.errors import SceneError
 from engine.materials import Fracture, Material
 from engine.precision import Precision
@@ -180,9 +180,9 @@ class Scene(Frozen):
     @model_validator(mode="after")
     def _repeats_in_whole_blocks(self) -> Self:
         for length in filter(None, self.period):
-            blocks = length / (EDGE * self.dx)
+            blocks = length / (BLOCK_EDGE * self.dx)
             if round(blocks) < 1 or abs(blocks - round(blocks)) > 1e-6:
-                raise ValueError(f"'period' {length} m is not a multiple of {EDGE} cells of {self.dx} m")
+                raise ValueError(f"'period' {length} m is not a multiple of {BLOCK_EDGE} cells of {self.dx} m")
         if any(self.period) and self.physics.gravity:
             raise ValueError("'period' repeats space without end: it needs self-gravity off, physics.gravity = false")
         return self
@@ -190,7 +190,7 @@ class Scene(Frozen):
     @property
     def period_blocks(self) -> tuple[int, int, int]:
         """Blocks after which space repeats along each axis; 0 is unbounded."""
-        x, y, z = (round(length / (EDGE * self.dx)) if length else 0 for length in self.period)
+        x, y, z = (round(length / (BLOCK_EDGE * self.dx)) if length else 0 for length in self.period)
         return x, y, z
 
     @property

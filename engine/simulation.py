@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from engine import assembly
 from engine.backend import require_precision
-from engine.blocks import EDGE, HALF_RANGE, block_of, build_blocks, out_of_range, wrap
+from engine.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.body import Solid
 from engine.clock import FAULT_NONE, Clock
+from engine.constants import BLOCK_EDGE
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity import SelfGravity
 from engine.initial import initial_state
@@ -148,7 +149,7 @@ class Simulation:
     def _require_in_range(self, x: NDArray[np.float64]) -> None:
         far = out_of_range(x, self.scene.dx)
         if far.any():
-            p, largest = int(np.argmax(far)), EDGE * HALF_RANGE * self.scene.dx
+            p, largest = int(np.argmax(far)), BLOCK_EDGE * HALF_RANGE * self.scene.dx
             distance, advice = float(np.abs(x[p]).max()), "end the run earlier, or make cells larger"
             raise stop("coordinate [m]", distance, f"below {largest:.3g}", self.time, p, advice=advice)
 

@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 
 from engine.body import Body
-from engine.orbit import G
+from engine.constants import G_NEWTON
 from engine.scene import Gravity, Numerics, Physics, Scene
 from engine.verification.check import Check, share
 from engine.verification.drive import begin, fitted_order, follow
@@ -45,7 +45,7 @@ class Fall:
     @property
     def collapse_time(self) -> float:
         """sqrt(3 pi/(32 G rho)) [s]."""
-        return float(np.sqrt(3.0 * np.pi / (32.0 * G * 2700.0)))
+        return float(np.sqrt(3.0 * np.pi / (32.0 * G_NEWTON * 2700.0)))
 
     def measure(self) -> float:
         """Collapse time that the size at `until` implies [s]."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.body import Body
-from engine.orbit import G
+from engine.constants import G_NEWTON
 from engine.scene import Physics, Scene
 from engine.verification.check import Check, difference
 from engine.verification.drive import Array, begin, follow
@@ -36,7 +36,7 @@ class Hydrostatic:
     def pressure(self, r: Array) -> Array:
         """P(r) = (2/3) pi G rho^2 (R^2 - r^2) [Pa] at distances r [m] from the centre."""
         body = self.body
-        return np.asarray(2.0 / 3.0 * np.pi * G * body.material.rho0**2 * (body.radius**2 - r**2))
+        return np.asarray(2.0 / 3.0 * np.pi * G_NEWTON * body.material.rho0**2 * (body.radius**2 - r**2))
 
     def at_rest(self, seed: int) -> tuple[float, float, float]:
         """RMS of P - P(r) [Pa], RMS speed [m/s] and share of broken particles after `end_time`."""

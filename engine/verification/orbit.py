@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.collision import Collision
-from engine.orbit import G
+from engine.constants import G_NEWTON
 from engine.scene import Numerics
 from engine.verification.check import Check, difference
 from engine.verification.drive import Array, Moment, begin, follow
@@ -35,7 +35,7 @@ class Infall:
     def checks(self) -> list[Check]:
         """Speed at the start, and the speed and offset at contact that the end of the fall leads to."""
         scene, body = self.collision.scene(), self.collision.bodies_at_contact()[0]
-        contact, mu = 2.0 * body.radius, 2.0 * G * body.mass
+        contact, mu = 2.0 * body.radius, 2.0 * G_NEWTON * body.mass
         start = self.collision.approach()
         fall = (2.0 - NEAR) / (2.0 - 1.0)
         end = follow(begin(scene), scene.start_time * (1.0 - fall))

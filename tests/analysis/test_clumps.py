@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.clumps import Clumps, as_points, bound_to_largest, friends_of_friends
-from engine.orbit import G
+from engine.constants import G_NEWTON
 
 LINE = np.array([[0.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0], [5.0, 0, 0]])
 
@@ -35,7 +35,7 @@ def test_clumps_as_points_have_the_mean_position_and_velocity() -> None:
 
 
 def escape_speed(mass: float, distance: float) -> float:
-    return float(np.sqrt(2.0 * G * mass / distance))
+    return float(np.sqrt(2.0 * G_NEWTON * mass / distance))
 
 
 @pytest.mark.parametrize(("share", "bound"), [(0.999, True), (1.001, False)])

@@ -5,11 +5,11 @@ import pytest
 import taichi as ti
 
 from engine.backend import PRECISION, mat3
+from engine.constants import G_NEWTON
 from engine.direct_sum import DirectSum
 from engine.errors import GuardFault
 from engine.guard import Guard
 from engine.ledger import as_row
-from engine.orbit import G
 from engine.particles import Particles
 from engine.snapshot import FIELDS, snapshot
 from engine.sphere import sphere_points
@@ -46,7 +46,7 @@ def pulls(x: Array, mass: Array, radius: float) -> Array:
     """Sum over all pairs of balls, in double precision."""
     gap = x[None] - x[:, None]
     square = np.maximum((gap**2).sum(axis=2), radius**2)
-    return np.asarray(G * (mass[None, :, None] * gap / square[:, :, None] ** 1.5).sum(axis=1))
+    return np.asarray(G_NEWTON * (mass[None, :, None] * gap / square[:, :, None] ** 1.5).sum(axis=1))
 
 
 @pytest.mark.parametrize("R", [1e-3, 5e4, 6.4e6, 1e12])
@@ -63,7 +63,7 @@ def test_gravity_of_bodies_of_any_size(R, opening):
     exact = pulls(x, mass, h)
     error = np.linalg.norm(solver.pull(0.0) - exact, axis=1) / np.linalg.norm(exact, axis=1)
     assert np.percentile(error, 99) < (5e-3 if opening else 1e-4)
-    assert solver.energy() == pytest.approx(-1.2 * G * (count * mass[0]) ** 2 / R, rel=0.1)
+    assert solver.energy() == pytest.approx(-1.2 * G_NEWTON * (count * mass[0]) ** 2 / R, rel=0.1)
 
 
 def test_the_ledger_sums_in_double_precision():

@@ -16,9 +16,8 @@ from engine.checkpoint import save_checkpoint
 from engine.collision import Collision
 from engine.errors import Fault, GuardFault, stop
 from engine.guard import ENERGY_GROWTH, LARGEST_DRIFT, SPEED_FACTOR, STEPS_FACTOR, Guard
-from engine.history import Row
 from engine.jobdir import JobDirectory, Status
-from engine.ledger import as_row, totals
+from engine.ledger import Row, as_row, totals
 from engine.materials import Material, Tillotson
 from engine.particles import Arrays, Particles
 from engine.run import Options, Run

@@ -5,9 +5,9 @@ import pytest
 
 import engine.tree
 from engine import backend
+from engine.constants import G_NEWTON
 from engine.direct_sum import DirectSum
 from engine.gravity import SelfGravity
-from engine.orbit import G
 from engine.particles import Particles
 from engine.scene import Gravity
 from engine.sphere import sphere_points
@@ -23,7 +23,7 @@ RADIUS = 0.02
 
 def with_particles(x: Array, mass: Array | None = None) -> Particles:
     particles = Particles(len(x))
-    particles.write({"x": x, "mass": np.ones(len(x)) / G if mass is None else mass, "v": np.zeros_like(x)})
+    particles.write({"x": x, "mass": np.ones(len(x)) / G_NEWTON if mass is None else mass, "v": np.zeros_like(x)})
     return particles
 
 
@@ -73,7 +73,7 @@ def test_the_error_falls_with_the_first_power_of_the_opening_that_is_left_out(so
 def test_a_cloud_that_acts_as_one_node_is_wrong_by_the_first_moment_left_out(solver, order) -> None:
     generator = np.random.default_rng(6)
     cloud, probes = generator.exponential(size=(512, 3)) * [1.0, 1.0, 3.0], generator.uniform(-1.0, 1.0, (512, 3))
-    mass = np.concatenate([np.ones(512), np.zeros(512)]) / G
+    mass = np.concatenate([np.ones(512), np.zeros(512)]) / G_NEWTON
     distances = np.array([300.0, 600.0, 1200.0])
     errors = []
     for distance in distances:
@@ -141,7 +141,7 @@ def test_particles_in_one_place_or_in_a_line_will_do() -> None:
 
 def test_unequal_masses_keep_their_weight() -> None:
     x = uniform(2000)
-    particles = with_particles(x, np.random.default_rng(5).uniform(0.1, 100.0, 2000) / G)
+    particles = with_particles(x, np.random.default_rng(5).uniform(0.1, 100.0, 2000) / G_NEWTON)
     exact = DirectSum(particles, RADIUS).pull(0.0)
     assert np.percentile(error(Tree(particles, RADIUS, 0.5), exact), 99) < 5e-3
 

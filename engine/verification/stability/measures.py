@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.bounds import energy_growth, keeps_energy, momentum_drift
 from engine.guard import Guard
-from engine.history import Row
+from engine.ledger import Row
 
 LARGEST_GROWTH = 0.02
 """Growth of the total energy up to which a run is stable, in the measure of engine.bounds.energy_growth."""

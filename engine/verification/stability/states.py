@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from engine.blocks import EDGE, HALF_RANGE
+from engine.blocks import HALF_RANGE
 from engine.bounds import cold_energy
+from engine.constants import BLOCK_EDGE
 from engine.initial import initial_state
 from engine.particles import Arrays
 from engine.scene import Scene
@@ -70,7 +71,7 @@ def distant(distance: float) -> Changes:
 
 def near_the_edge(scene: Scene) -> Arrays:
     """The second of two particles fifty cells inside the range of the grid."""
-    return {"x": np.array([[0.0, 0.0, 0.0], [(EDGE * HALF_RANGE - 50.0) * scene.dx, 0.0, 0.0]])}
+    return {"x": np.array([[0.0, 0.0, 0.0], [(BLOCK_EDGE * HALF_RANGE - 50.0) * scene.dx, 0.0, 0.0]])}
 
 
 def one_hot(energy: float) -> Changes:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.constants import G_NEWTON
 from engine.direct_sum import DirectSum
-from engine.orbit import G
 from engine.tree import Tree
 from tests.benchmarks.gravity.states import State
 from tests.engine.monopoles import Monopoles
@@ -56,11 +56,11 @@ class PyTreeGrav(Code):
         self.quadrupole = quadrupole
 
     def exact(self) -> Pull:
-        return np.asarray(self.accelerate(*self.given, method="bruteforce", G=G))
+        return np.asarray(self.accelerate(*self.given, method="bruteforce", G=G_NEWTON))
 
     def evaluate(self, opening: float) -> Pull:
         options = {"theta": opening, "quadrupole": self.quadrupole, "group_size": GROUP}
-        return np.asarray(self.accelerate(*self.given, method="tree", G=G, **options))
+        return np.asarray(self.accelerate(*self.given, method="tree", G=G_NEWTON, **options))
 
 
 class Rebound(Code):
@@ -75,7 +75,7 @@ class Rebound(Code):
         self.update.argtypes, self.update.restype = [ctypes.c_void_p], None
         x = state.x - state.x.mean(axis=0)
         self.simulation = rebound.Simulation()
-        self.simulation.G, self.simulation.softening = G, state.radius
+        self.simulation.G, self.simulation.softening = G_NEWTON, state.radius
         self.simulation.root_size = 2.2 * float(np.abs(x).max())
         for (px, py, pz), mass in zip(x.tolist(), state.mass.tolist(), strict=True):
             self.simulation.add(rebound.Particle(m=mass, x=px, y=py, z=pz))
