@@ -10,10 +10,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from engine.device.precision import choose
 from engine.errors import JobBusyError, JobError, RunFault, SceneError, in_words
 from engine.jobdir import JobDirectory, Status
 from engine.mistakes import suggestion
-from engine.precision import choose
 
 application = typer.Typer(
     add_completion=False,

@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from engine.backend import Real
+from engine.device.backend import Real
 
 FAULT_NONE = 0
 FAULT_INVERTED = 1

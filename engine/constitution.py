@@ -8,9 +8,9 @@ from typing import Any
 
 import taichi as ti
 
-from engine.backend import Real
+from engine.device.backend import Real
+from engine.device.tensors import determinant_increment, identity, pack, symmetric, unpack
 from engine.materials import Material
-from engine.tensors import determinant_increment, identity, pack, symmetric, unpack
 
 
 @ti.func

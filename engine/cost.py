@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from engine import backend
 from engine.checkpoint import load_checkpoint
+from engine.device import backend
 from engine.jobdir import JobDirectory
 from engine.parts import parts_of
 from engine.scene import Scene, scene_at

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from engine.backend import TASK, on_gpu
+from engine.device.backend import TASK, on_gpu
 from engine.gravity import LANES, Places, SelfGravity, Vectors
 
 

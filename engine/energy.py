@@ -4,7 +4,7 @@ from typing import Any
 
 import taichi as ti
 
-from engine.backend import Real
+from engine.device.backend import Real
 
 
 @ti.data_oriented

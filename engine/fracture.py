@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import taichi as ti
 
 from engine import materials
-from engine.backend import Real, filled
 from engine.body import Solid
+from engine.device.backend import Real, filled
+from engine.device.tensors import largest_eigenvalue, norm_squared
 from engine.flaws import Flaws
-from engine.tensors import largest_eigenvalue, norm_squared
 
 
 @ti.data_oriented

@@ -7,8 +7,8 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.backend import Real, capacity, on_gpu, overwrite
 from engine.constants import G_NEWTON
+from engine.device.backend import Real, capacity, on_gpu, overwrite
 from engine.net_effect import NetEffect, without_net_effect
 
 LANES = 8

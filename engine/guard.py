@@ -8,8 +8,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.backend import EPSILON
 from engine.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift, speed_scale
+from engine.device.backend import EPSILON
 from engine.errors import SMALLER_STEPS, stop
 from engine.ledger import Row
 from engine.particles import Arrays, Particles

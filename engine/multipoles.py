@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from engine.backend import Real, capacity, mat3, vec3, vec4, vec6
+from engine.device.backend import Real, capacity, mat3, vec3, vec4, vec6
+from engine.device.tensors import identity, pack, unpack
 from engine.gravity import LANES, Places, SelfGravity, Vectors
 from engine.halves import halve
-from engine.tensors import identity, pack, unpack
 
 LEAF = 24
 """Most particles in a leaf: three rows."""

@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.backend import Real, capacity, mat3, overwrite, place3, vec3, vec6
+from engine.device.backend import Real, capacity, mat3, overwrite, place3, vec3, vec6
 
 Arrays = dict[str, NDArray[Any]]
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from engine import PHYSICS_VERSION
-from engine.backend import Real
+from engine.device.backend import Real
 from engine.jobdir import JobDirectory
 from engine.scene import Scene
 from engine.storage import write_json

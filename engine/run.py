@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from xarray import Dataset
 
-from engine import PHYSICS_VERSION, backend
+from engine import PHYSICS_VERSION
 from engine.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
+from engine.device import backend
 from engine.errors import Fault, GuardFault, JobError, SceneError
 from engine.guard import Guard
 from engine.history import History

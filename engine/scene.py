@@ -7,9 +7,9 @@ from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator,
 
 from engine.body import MOST_PARTICLES, Body, Box
 from engine.constants import BLOCK_EDGE
+from engine.device.precision import Precision
 from engine.errors import SceneError
 from engine.materials import Fracture, Material
-from engine.precision import Precision
 from engine.validation import Finite, Frozen, NonNegative, Number, OrOff, Positive, Vector, Whole, read_table, validate
 
 Fraction = Annotated[Number, Field(gt=0.0, le=1.0)]

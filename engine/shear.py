@@ -9,10 +9,8 @@ from typing import Any
 
 import taichi as ti
 
-from engine.backend import Real, mat3, vec6
-from engine.materials import Material
-from engine.strength import retained
-from engine.tensors import (
+from engine.device.backend import Real, mat3, vec6
+from engine.device.tensors import (
     deviator,
     exp_minus_identity,
     half_log,
@@ -21,6 +19,8 @@ from engine.tensors import (
     pack,
     unpack,
 )
+from engine.materials import Material
+from engine.strength import retained
 
 SMALL_GROWTH = 0.1
 """Change of volume in one step up to which its powers come from a series."""

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine import assembly
-from engine.backend import require_precision
 from engine.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.body import Solid
 from engine.clock import FAULT_NONE, Clock
 from engine.constants import BLOCK_EDGE
+from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity import SelfGravity
 from engine.initial import initial_state

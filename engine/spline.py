@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from engine.backend import Real, vec3
+from engine.device.backend import Real, vec3
 
 
 @ti.func

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import taichi as ti
 import taichi.math as tm
 
-from engine.backend import Real
+from engine.device.backend import Real
 from engine.materials import Material
 
 

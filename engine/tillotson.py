@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import taichi as ti
 
-from engine.backend import Real
+from engine.device.backend import Real
 from engine.materials import Material
 
 SOUND_SPEED_FLOOR = 0.1

@@ -7,7 +7,7 @@ from typing import Any
 
 import taichi as ti
 
-from engine.backend import TASK, capacity, on_gpu, vec3
+from engine.device.backend import TASK, capacity, on_gpu, vec3
 from engine.multipoles import Multipoles
 
 BATCH = 64

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from engine.backend import vec3
+from engine.device.backend import vec3
 from engine.validation import Vector
 
 

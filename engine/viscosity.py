@@ -3,8 +3,8 @@
 import taichi as ti
 
 from engine import scene
-from engine.backend import Real, mat3
-from engine.tensors import deviator, identity
+from engine.device.backend import Real, mat3
+from engine.device.tensors import deviator, identity
 
 
 @ti.data_oriented

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
-from engine.backend import Real, place3, vec3
+from engine.device.backend import Real, place3, vec3
 from engine.scene import Wall
 
 STICK = -1.0

@@ -13,7 +13,7 @@ settings.load_profile("untimed")
 @pytest.fixture
 def taichi() -> Iterator[None]:
     """A freshly started Taichi on one thread; fields of earlier tests are gone."""
-    from engine import backend
+    from engine.device import backend
 
     backend.start(threads=1)
     yield

@@ -8,7 +8,7 @@ from math import inf
 import pandas as pd
 from rich.table import Table
 
-from engine import backend
+from engine.device import backend
 from engine.errors import RunFault
 from engine.verification.check import Check, Problem
 

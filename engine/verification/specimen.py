@@ -4,10 +4,10 @@ import numpy as np
 import taichi as ti
 
 from engine import materials
-from engine.backend import Real, mat3
 from engine.body import Body
 from engine.constitution import Constitution
 from engine.damage import Damage
+from engine.device.backend import Real, mat3
 from engine.energy import InternalEnergy
 from engine.flaws import Flaws
 from engine.fracture import Fracture

@@ -10,8 +10,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from engine import PHYSICS_VERSION, backend
-from engine.precision import Precision
+from engine import PHYSICS_VERSION
+from engine.device import backend
+from engine.device.precision import Precision
 from engine.storage import write_dataset
 from engine.verification.drive import fitted_order, settings
 from engine.verification.knobs import TRADEOFFS

@@ -15,7 +15,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from engine import backend
+from engine.device import backend
 from engine.parts import allocated_bytes, parts_of
 from engine.scene import Gravity, Scene, Viscosity, Wall
 from engine.simulation import Simulation

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.table import Table
 
-from engine import backend
 from engine.collision import Collision
+from engine.device import backend
 from engine.errors import RunFault
 from engine.ledger import Totals
 from engine.scene import Scene

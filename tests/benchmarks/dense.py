@@ -10,10 +10,10 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.backend import mat3, vec3, vec4
+from engine.device.backend import mat3, vec3, vec4
+from engine.device.tensors import unpack
 from engine.particles import Particles
 from engine.spline import spline_weights
-from engine.tensors import unpack
 from engine.transfer import affine_velocity
 
 MARGIN = 2

@@ -4,8 +4,8 @@ from typing import Any
 
 import taichi as ti
 
-from engine import backend
-from engine.backend import TASK, Real
+from engine.device import backend
+from engine.device.backend import TASK, Real
 from tests.benchmarks.child import answer
 from tests.benchmarks.stopwatch import Stopwatch
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import backend
+from engine.device import backend
 from engine.simulation import Simulation
 from tests.benchmarks.baseline import (
     ROUND_OFF,

@@ -1,7 +1,7 @@
 """The scene that is timed: a collision of two bodies, from shortly before contact."""
 
 from engine.collision import Collision
-from engine.precision import chosen
+from engine.device.precision import chosen
 from engine.scene import Gravity, Numerics, Scene
 
 

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from engine import backend
-from engine.backend import Real
+from engine.device import backend
+from engine.device.backend import Real
 from engine.scene import Gravity
 from engine.simulation import Simulation
 from tests.benchmarks.child import answer

@@ -9,11 +9,11 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.backend import mat3, overwrite, vec3
 from engine.constitution import Constitution, ddot, strain_increment
+from engine.device.backend import mat3, overwrite, vec3
+from engine.device.tensors import identity, pack, unpack
 from engine.particles import Arrays
 from engine.strength import retained
-from engine.tensors import identity, pack, unpack
 
 
 @ti.data_oriented

@@ -2,7 +2,7 @@
 
 import pytest
 
-from engine import backend
+from engine.device import backend
 from engine.simulation import Simulation
 from tests.benchmarks.baseline import (
     ROUND_OFF,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.engine.device import COMPARED
+from tests.helpers.device import COMPARED
 
 LAWS = {
     "tensors": "logarithms, eigenvalues",

@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.scene import Scene
 from engine.simulation import Simulation
-from tests.engine.device import Array
+from tests.helpers.device import Array
 
 RUBBLE = {"fracture": None, "gravity": None}
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tests.engine.device import Array, transform
+from tests.helpers.device import Array, transform
 
 RHO0, K, G = 2700.0, 2.67e10, 2.27e10
 LONGITUDINAL = K + 4.0 / 3.0 * G

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from engine.backend import mat3
 from engine.constitution import Constitution
 from engine.damage import Damage
+from engine.device.backend import mat3
 from engine.energy import InternalEnergy
 from engine.fracture import Unbreakable
 from engine.materials import Material
@@ -16,7 +16,7 @@ from engine.shear import Fluid, Hencky
 from engine.strength import Strength, Unlimited
 from engine.tillotson import Tillotson
 from engine.viscosity import Inviscid
-from tests.engine.device import Array
+from tests.helpers.device import Array
 
 Gradients = ti.types.ndarray(dtype=mat3, ndim=1)
 

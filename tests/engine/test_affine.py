@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import taichi as ti
 
-from engine.backend import mat3
+from engine.device.backend import mat3
 from engine.transfer import affine_velocity
-from tests.engine.device import Array, worst
 from tests.engine.moving import advance, body, scene, started
+from tests.helpers.device import Array, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

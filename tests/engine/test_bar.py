@@ -7,9 +7,9 @@ from engine.flaws import Flaws, draw_flaws
 from engine.fracture import Fracture
 from engine.materials import PARAMETER_SETS
 from engine.scene import Body
-from tests.engine.device import Array, worst
 from tests.engine.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
 from tests.engine.point import Points
+from tests.helpers.device import Array, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.blocks import Blocks, block_of, build_blocks, out_of_range
-from tests.engine.device import Array
+from tests.helpers.device import Array
 
 DX = 3.0
 STENCIL = np.stack(np.meshgrid(*[range(3)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)

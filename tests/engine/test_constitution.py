@@ -3,9 +3,9 @@ import pytest
 
 from engine import scene
 from engine.viscosity import Viscosity
-from tests.engine.device import Array, norm, rotations, traceless, worst
 from tests.engine.oracle import LONGITUDINAL, RHO0, G, K, log_strain, strength_limit, tillotson
 from tests.engine.point import Points, unpacked
+from tests.helpers.device import Array, norm, rotations, traceless, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

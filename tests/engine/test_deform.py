@@ -3,12 +3,12 @@ import pytest
 import taichi as ti
 from scipy.spatial.transform import Rotation
 
-from engine.backend import mat3
+from engine.device.backend import mat3
+from engine.device.tensors import determinant_increment, deviator, half_log, unpack
 from engine.shear import deform
-from engine.tensors import determinant_increment, deviator, half_log, unpack
-from tests.engine.device import Array, compose, norm, rotations, traceless, worst
 from tests.engine.oracle import log_strain
 from tests.engine.point import unpacked
+from tests.helpers.device import Array, compose, norm, rotations, traceless, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

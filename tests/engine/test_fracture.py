@@ -5,8 +5,8 @@ from engine.flaws import Flaws, draw_flaws
 from engine.fracture import Fracture, Unbreakable
 from engine.materials import PARAMETER_SETS
 from engine.scene import Body
-from tests.engine.device import Array, compose, evaluate, rotations, worst
 from tests.engine.oracle import LONGITUDINAL, RHO0, G, K
+from tests.helpers.device import Array, compose, evaluate, rotations, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -5,7 +5,7 @@ from engine.direct_sum import DirectSum
 from engine.particles import Particles
 from engine.sphere import sphere_points
 from engine.tree import Tree
-from tests.engine.device import Array, worst
+from tests.helpers.device import Array, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

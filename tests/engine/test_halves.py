@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from engine.halves import halve
-from tests.engine.device import Array
+from tests.helpers.device import Array
 
 
 def cloud(count: int) -> Array:

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from engine import backend
 from engine.body import Body
 from engine.constants import G_NEWTON
+from engine.device import backend
 from engine.scene import Gravity, Numerics, Physics, Scene
 from engine.simulation import Simulation
 from engine.verification.rock import elastic
-from tests.engine.device import Array
+from tests.helpers.device import Array
 
 AXIS, ECCENTRICITY, TURNS = 1e6, 0.2, 20
 SOFT = elastic(2700.0, 1e-9, 1e-9)

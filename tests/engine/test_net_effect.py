@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from engine.net_effect import without_net_effect
-from tests.engine.device import Array, worst
+from tests.helpers.device import Array, worst
 
 
 def cloud(count: int) -> tuple[Array, Array, Array]:

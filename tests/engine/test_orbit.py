@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from engine.orbit import Approach, apocentre, approach
-from tests.engine.device import Array
+from tests.helpers.device import Array
 
 G_N, R = 6.6743e-11, 50e3
 MU = G_N * 2.0 * 2700.0 * 4.0 / 3.0 * np.pi * R**3

@@ -17,9 +17,9 @@ from engine.simulation import Simulation
 from engine.storage import read_dataset
 from engine.tillotson import ColdTillotson
 from engine.verification.column import StandingWave
-from tests.engine.device import evaluate, worst
 from tests.engine.moving import advance, body, scene, started
 from tests.engine.oracle import RHO0, K
+from tests.helpers.device import evaluate, worst
 
 FULL: dict[str, Any] = {"viscosity": {"shear": 1e5}, "walls": [{"point": [0.0, 0.0, -1e6]}]}
 BARE: dict[str, Any] = {"energy": False, "shear": False, "strength": False, "fracture": None, "gravity": None}

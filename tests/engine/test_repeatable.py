@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import engine.simulation
-from engine import backend
 from engine.collision import Collision
+from engine.device import backend
 from engine.scene import Scene
 from engine.simulation import LAUNCHES, Simulation
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from engine import backend
 from engine.collision import Collision
+from engine.device import backend
 from engine.particles import Arrays
 from engine.scene import Scene
 from engine.simulation import Simulation

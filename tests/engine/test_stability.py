@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 
 import engine.guard
 from engine.__main__ import application
+from engine.device.precision import chosen
 from engine.jobdir import JobDirectory
-from engine.precision import chosen
 from engine.storage import read_dataset
 from engine.verification.processes import in_own_process
 from engine.verification.stability import matrix

@@ -3,8 +3,8 @@ import pytest
 
 from engine.materials import PARAMETER_SETS, Material
 from engine.strength import Strength, Unlimited, retained
-from tests.engine.device import Array, evaluate, worst
 from tests.engine.oracle import U_MELT, strength_limit
+from tests.helpers.device import Array, evaluate, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -3,8 +3,8 @@ import pytest
 
 from engine.materials import Material
 from engine.tillotson import SOUND_SPEED_FLOOR, Tillotson
-from tests.engine.device import Array, evaluate, worst
 from tests.engine.oracle import E0, E_CV, E_IV, RHO0, K, squared_sound_speed, tillotson
+from tests.helpers.device import Array, evaluate, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

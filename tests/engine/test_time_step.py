@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from engine.simulation import Simulation
-from tests.engine.device import Array
 from tests.engine.moving import RUBBLE, body, one_step, scene, started
 from tests.engine.oracle import LONGITUDINAL, RHO0, G, squared_sound_speed
+from tests.helpers.device import Array
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -6,9 +6,9 @@ import pytest
 from engine.body import Box
 from engine.initial import initial_state
 from engine.scene import Numerics, Physics, Scene
-from tests.engine.device import Array, norm, traceless, worst
 from tests.engine.moving import advance, body, one_step, rubble_collision, scene, spline, started
 from tests.engine.oracle import RHO0
+from tests.helpers.device import Array, norm, traceless, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

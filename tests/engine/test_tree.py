@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 import engine.tree
-from engine import backend
 from engine.constants import G_NEWTON
+from engine.device import backend
 from engine.direct_sum import DirectSum
 from engine.gravity import SelfGravity
 from engine.particles import Particles
 from engine.scene import Gravity
 from engine.sphere import sphere_points
 from engine.tree import Tree
-from tests.engine.device import Array
 from tests.engine.monopoles import Monopoles
+from tests.helpers.device import Array
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

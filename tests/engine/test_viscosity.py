@@ -3,7 +3,7 @@ import pytest
 
 from engine import scene
 from engine.viscosity import Inviscid, Viscosity
-from tests.engine.device import Array, evaluate, norm, worst
+from tests.helpers.device import Array, evaluate, norm, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

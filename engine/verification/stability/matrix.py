@@ -7,7 +7,7 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from pathlib import Path
 
-from engine import backend
+from engine.device import backend
 from engine.jobdir import JobDirectory
 from engine.verification.processes import in_own_process
 from engine.verification.stability.cases import all_cases

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from engine import backend
 from engine.checkpoint import load_checkpoint, save_checkpoint
+from engine.device import backend
 from engine.errors import GuardFault
 from engine.guard import require_finite
 from engine.jobdir import JobDirectory, Status

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import backend
+from engine.device import backend
 from tests.benchmarks.child import answer
 from tests.benchmarks.gravity.codes import CODES, Pull
 from tests.benchmarks.gravity.states import along_curve, load

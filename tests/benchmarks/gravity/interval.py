@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 import engine.gravity
-from engine import backend
 from engine.collision import Collision
+from engine.device import backend
 from engine.net_effect import without_net_effect
 from engine.scene import Gravity
 from engine.simulation import Simulation

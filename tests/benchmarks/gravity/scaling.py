@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from engine import backend
+from engine.device import backend
 from engine.scene import Gravity
 from engine.tree import Tree
 from tests.benchmarks.child import answer

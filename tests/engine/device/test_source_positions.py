@@ -3,7 +3,7 @@
 import pytest
 import taichi as ti
 
-from engine import translation
+from engine.device import source_positions as translation
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

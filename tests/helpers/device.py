@@ -9,7 +9,7 @@ import taichi as ti
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from engine.backend import Real, mat3, vec3, vec6
+from engine.device.backend import Real, mat3, vec3, vec6
 
 Array = NDArray[Any]
 Shape = tuple[int, ...]

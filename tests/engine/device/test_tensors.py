@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import taichi as ti
 
-from engine.tensors import (
+from engine.device.tensors import (
     determinant_increment,
     deviator,
     eigensystem,
@@ -17,7 +17,7 @@ from engine.tensors import (
     pack,
     unpack,
 )
-from tests.engine.device import Array, compose, evaluate, norm, rotations, traceless, transform, worst
+from tests.helpers.device import Array, compose, evaluate, norm, rotations, traceless, transform, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -5,7 +5,7 @@ import math
 import taichi as ti
 import taichi.math as tm
 
-from engine.backend import mat3, vec3, vec6
+from engine.device.backend import mat3, vec3, vec6
 
 SERIES_LIMIT = 0.05
 """Frobenius norm up to which the series below reach round-off; larger tensors go through their eigenvectors."""

@@ -1,11 +1,11 @@
-"""Tests in single precision, which tests/engine/test_precision.py runs in a process of their own."""
+"""Tests in single precision, which tests/engine/device/test_precision.py runs in a process of their own."""
 
 import numpy as np
 import pytest
 import taichi as ti
 
-from engine.backend import PRECISION, mat3
 from engine.constants import G_NEWTON
+from engine.device.backend import PRECISION, mat3
 from engine.direct_sum import DirectSum
 from engine.errors import GuardFault
 from engine.guard import Guard
@@ -15,8 +15,8 @@ from engine.snapshot import FIELDS, snapshot
 from engine.sphere import sphere_points
 from engine.transfer import affine_velocity
 from engine.tree import Tree
-from tests.engine.device import Array
 from tests.engine.moving import RUBBLE, advance, body, rubble_collision, scene, started
+from tests.helpers.device import Array
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

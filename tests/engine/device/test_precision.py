@@ -12,9 +12,9 @@ import pytest
 from typer.testing import CliRunner
 
 from engine.__main__ import BAD_INPUT, application
-from engine.backend import require_precision
+from engine.device.backend import require_precision
+from engine.device.precision import VARIABLE, chosen
 from engine.errors import SceneError
-from engine.precision import VARIABLE, chosen
 from engine.storage import read_dataset
 from tests.engine.jobs import assert_same_results, run_engine, start_and_stop, write_job
 
@@ -68,7 +68,7 @@ def test_momentum_is_kept_to_single_precision(reference: Path) -> None:
 
 
 def test_what_single_precision_must_hold() -> None:
-    command = [sys.executable, "-m", "pytest", str(Path(__file__).parent / "single.py")]
+    command = [sys.executable, "-m", "pytest", str(Path(__file__).parent / "single_precision_cases.py")]
     result = subprocess.run(command, env={**os.environ, VARIABLE: "f32"}, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout
 

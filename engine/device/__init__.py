@@ -1,0 +1,1 @@
+"""device: Taichi, and arithmetic on it."""
