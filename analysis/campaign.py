@@ -6,7 +6,7 @@ from typing import Any, Self
 from pydantic import BaseModel, ConfigDict, model_validator
 
 from engine.errors import SceneError
-from engine.validation import read_table, validate
+from engine.scene.fields import read_table, validate
 
 Scalar = float | int | str
 

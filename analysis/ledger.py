@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from engine.body import Solid
 from engine.errors import JobError
-from engine.scene import Scene
+from engine.scene.bodies import Solid
+from engine.scene.scene import Scene
 from engine.storage import read_dataset
 
 NEGLIGIBLE = 1e-6

@@ -14,7 +14,7 @@ from analysis.spin import spin_period
 from analysis.variables import DAMAGED
 from engine.errors import JobError, RunFault
 from engine.jobdir import JobDirectory
-from engine.scene import scene_in
+from engine.scene.scene import scene_in
 
 Numbers = dict[str, float]
 

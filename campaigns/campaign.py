@@ -3,8 +3,8 @@
 from typing import Any
 
 from campaigns.study import Study
-from engine.collision import Collision
-from engine.validation import Frozen
+from engine.scene.collision import Collision
+from engine.scene.fields import Frozen
 
 Scalar = bool | int | float | str | None
 

@@ -13,10 +13,10 @@ from campaigns.campaign import Campaign, Job
 from campaigns.keys import flatten, ordered, scalar_keys, value_at
 from campaigns.study import Study
 from engine import PHYSICS_VERSION
-from engine.collision import Collision
 from engine.errors import SceneError
-from engine.mistakes import suggestion
-from engine.scene import Scene
+from engine.scene.collision import Collision
+from engine.scene.input_errors import suggestion
+from engine.scene.scene import Scene
 
 
 def expand(study: Study, source: str) -> Campaign:

@@ -5,9 +5,9 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from engine.collision import Collision
-from engine.scene import Seed
-from engine.validation import Frozen, Number
+from engine.scene.collision import Collision
+from engine.scene.fields import Frozen, Number
+from engine.scene.scene import Seed
 
 
 class ErrorBars(Frozen):

@@ -7,10 +7,10 @@ from pydantic import ConfigDict, Field
 
 from campaigns.keys import flatten, nest
 from campaigns.members import ErrorBars
-from engine.collision import Collision
 from engine.errors import SceneError
-from engine.mistakes import KeysOf, suggestion
-from engine.validation import Frozen, read_table, validate
+from engine.scene.collision import Collision
+from engine.scene.fields import Frozen, read_table, validate
+from engine.scene.input_errors import KeysOf, suggestion
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)]
 
@@ -37,7 +37,7 @@ class Study(Frozen):
     """What a study file holds.
 
     name: name of the study and of its results directory.
-    collision: settings of all collisions, keys as in engine.collision.Collision.
+    collision: settings of all collisions, keys as in engine.scene.collision.Collision.
     axes: dotted key of the collision -> its values; every combination is a job.
     cases: one table of settings for each collision, where they are no grid; together with axes, every case is run for
         every combination of the axes, or, where it sets a key of theirs itself, at that value only.

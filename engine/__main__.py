@@ -13,7 +13,7 @@ from rich.console import Console
 from engine.device.precision import choose
 from engine.errors import JobBusyError, JobError, RunFault, SceneError, in_words
 from engine.jobdir import JobDirectory, Status
-from engine.mistakes import suggestion
+from engine.scene.input_errors import suggestion
 
 application = typer.Typer(
     add_completion=False,
@@ -71,7 +71,7 @@ def explain(
 
     Exit code 0: shown; 1: the steps failed; 2: bad input.
     """
-    from engine.scene import scene_at
+    from engine.scene.scene import scene_at
 
     try:
         choose(scene_at(scene).numerics.precision)
@@ -172,7 +172,7 @@ def stability(
 
 def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) -> Status:
     """Import the engine only now: bad options and missing directories answer at once."""
-    from engine.scene import scene_in
+    from engine.scene.scene import scene_in
 
     choose(scene_in(directory).numerics.precision)
     from engine.run import Options, run_job

@@ -13,7 +13,7 @@ from engine.fracture import Fracture, Unbreakable
 from engine.gravity import SelfGravity
 from engine.initial import all_flaws
 from engine.particles import Particles
-from engine.scene import Scene
+from engine.scene.scene import Scene
 from engine.shear import Fluid, Hencky
 from engine.strength import Strength, Unlimited
 from engine.tillotson import ColdTillotson, Tillotson

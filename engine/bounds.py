@@ -7,8 +7,8 @@ from scipy.optimize import brentq
 
 from engine.constants import G_NEWTON
 from engine.ledger import Row
-from engine.materials import Material
-from engine.scene import Scene
+from engine.scene.material import Material
+from engine.scene.scene import Scene
 
 LARGEST_COMPRESSION = 1e6
 """Bounds of rho/rho0 beyond this are none."""

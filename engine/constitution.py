@@ -10,7 +10,7 @@ import taichi as ti
 
 from engine.device.backend import Real
 from engine.device.tensors import determinant_increment, identity, pack, symmetric, unpack
-from engine.materials import Material
+from engine.scene.material import Material
 
 
 @ti.func

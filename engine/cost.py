@@ -11,7 +11,7 @@ from engine.checkpoint import load_checkpoint
 from engine.device import backend
 from engine.jobdir import JobDirectory
 from engine.parts import parts_of
-from engine.scene import Scene, scene_at
+from engine.scene.scene import Scene, scene_at
 from engine.simulation import Simulation
 
 

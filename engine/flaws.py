@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.body import Solid
-from engine.materials import Fracture
+from engine.scene.bodies import Solid
+from engine.scene.material import Fracture
 
 
 @dataclass(frozen=True)

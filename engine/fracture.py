@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import taichi as ti
 
-from engine import materials
-from engine.body import Solid
 from engine.device.backend import Real, filled
 from engine.device.tensors import largest_eigenvalue, norm_squared
 from engine.flaws import Flaws
+from engine.scene import material as materials
+from engine.scene.bodies import Solid
 
 
 @ti.data_oriented

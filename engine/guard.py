@@ -13,7 +13,7 @@ from engine.device.backend import EPSILON
 from engine.errors import SMALLER_STEPS, stop
 from engine.ledger import Row
 from engine.particles import Arrays, Particles
-from engine.scene import Scene
+from engine.scene.scene import Scene
 from engine.transfer import LARGEST_INCREMENT
 
 SPEED_FACTOR = 10.0

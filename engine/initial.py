@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.body import Body, Box, Solid
 from engine.constants import G_NEWTON
-from engine.cuboid import box_points
 from engine.flaws import Flaws, draw_flaws, join
-from engine.materials import Material
 from engine.particles import Arrays
-from engine.scene import Scene
-from engine.sphere import sphere_points
+from engine.scene.bodies import Body, Box, Solid
+from engine.scene.cuboid import box_points
+from engine.scene.material import Material
+from engine.scene.placement import sphere_points
+from engine.scene.scene import Scene
 
 Vector = NDArray[np.float64]
 

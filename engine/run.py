@@ -22,7 +22,7 @@ from engine.history import History
 from engine.jobdir import HEARTBEAT_PERIOD, JobDirectory, Status
 from engine.ledger import Row, as_row
 from engine.provenance import record_session
-from engine.scene import Scene, scene_in
+from engine.scene.scene import Scene, scene_in
 from engine.simulation import Simulation
 from engine.snapshot import FIELDS, snapshot
 from engine.storage import read_dataset, write_dataset

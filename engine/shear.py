@@ -19,7 +19,7 @@ from engine.device.tensors import (
     pack,
     unpack,
 )
-from engine.materials import Material
+from engine.scene.material import Material
 from engine.strength import retained
 
 SMALL_GROWTH = 0.1

@@ -6,7 +6,7 @@ import taichi as ti
 import taichi.math as tm
 
 from engine.device.backend import Real
-from engine.materials import Material
+from engine.scene.material import Material
 
 
 @ti.data_oriented

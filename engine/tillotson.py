@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import taichi as ti
 
 from engine.device.backend import Real
-from engine.materials import Material
+from engine.scene.material import Material
 
 SOUND_SPEED_FLOOR = 0.1
 """Least sound speed, in units of sqrt(A/rho0): expanded states would otherwise stop having one."""

@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from engine.device.backend import vec3
-from engine.validation import Vector
+from engine.scene.fields import Vector
 
 
 @ti.data_oriented

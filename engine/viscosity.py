@@ -2,9 +2,9 @@
 
 import taichi as ti
 
-from engine import scene
 from engine.device.backend import Real, mat3
 from engine.device.tensors import deviator, identity
+from engine.scene import scene
 
 
 @ti.data_oriented

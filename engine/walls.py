@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from engine.device.backend import Real, place3, vec3
-from engine.scene import Wall
+from engine.scene.scene import Wall
 
 STICK = -1.0
 """Entry for the friction coefficient of a wall that sticks."""

@@ -12,7 +12,7 @@ from analysis.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, not
 from analysis.ledger import drifts, read_history
 from analysis.tables import cells
 from engine.jobdir import JobDirectory
-from engine.scene import scene_in
+from engine.scene.scene import scene_in
 
 LEDGER = {
     "kinetic_energy": ("kinetic", BLUE),

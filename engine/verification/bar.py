@@ -5,9 +5,9 @@ from math import inf
 
 import numpy as np
 
-from engine.body import Body
 from engine.flaws import Flaws, draw_flaws
-from engine.materials import Fracture, Material
+from engine.scene.bodies import Body
+from engine.scene.material import Fracture, Material
 from engine.verification.check import Check, share
 from engine.verification.drive import Array, timed
 from engine.verification.specimen import Specimen

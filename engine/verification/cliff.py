@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.body import Box
-from engine.scene import Numerics, Physics, Scene, Wall
+from engine.scene.bodies import Box
+from engine.scene.scene import Numerics, Physics, Scene, Wall
 from engine.verification.check import Check, difference
 from engine.verification.drive import Array, Moment, begin, follow
 from engine.verification.rock import elastic

@@ -5,9 +5,9 @@ from math import inf
 
 import numpy as np
 
-from engine.body import Body
 from engine.constants import G_NEWTON
-from engine.scene import Gravity, Numerics, Physics, Scene
+from engine.scene.bodies import Body
+from engine.scene.scene import Gravity, Numerics, Physics, Scene
 from engine.verification.check import Check, share
 from engine.verification.drive import begin, fitted_order, follow
 from engine.verification.rock import elastic

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.particles import Arrays
-from engine.scene import Scene
+from engine.scene.fields import Model
+from engine.scene.scene import Scene
 from engine.simulation import Simulation
-from engine.validation import Model
 
 Array = NDArray[np.float64]
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.body import Body
 from engine.constants import G_NEWTON
-from engine.scene import Physics, Scene
+from engine.scene.bodies import Body
+from engine.scene.scene import Physics, Scene
 from engine.verification.check import Check, difference
 from engine.verification.drive import Array, begin, follow
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.materials import Material
+from engine.scene.material import Material
 from engine.verification.bar import Pull
 from engine.verification.cliff import Cliff
 from engine.verification.collapse import Fall

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.collision import Collision
 from engine.constants import G_NEWTON
-from engine.scene import Numerics
+from engine.scene.collision import Collision
+from engine.scene.scene import Numerics
 from engine.verification.check import Check, difference
 from engine.verification.drive import Array, Moment, begin, follow
 

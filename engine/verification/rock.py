@@ -1,6 +1,6 @@
 """Materials of verification problems: simple limits of Tillotson's rock."""
 
-from engine.materials import Material, Tillotson
+from engine.scene.material import Material, Tillotson
 
 NEGLIGIBLE = 1e-12
 """Grueneisen constants so small that heat makes no pressure."""

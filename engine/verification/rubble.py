@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.collision import Collision
-from engine.scene import Physics, Scene
+from engine.scene.collision import Collision
+from engine.scene.scene import Physics, Scene
 from engine.verification.check import Check
 from engine.verification.drive import begin, follow
 

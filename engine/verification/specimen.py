@@ -3,8 +3,6 @@
 import numpy as np
 import taichi as ti
 
-from engine import materials
-from engine.body import Body
 from engine.constitution import Constitution
 from engine.damage import Damage
 from engine.device.backend import Real, mat3
@@ -12,6 +10,8 @@ from engine.energy import InternalEnergy
 from engine.flaws import Flaws
 from engine.fracture import Fracture
 from engine.particles import Particles
+from engine.scene import material as materials
+from engine.scene.bodies import Body
 from engine.shear import Hencky
 from engine.strength import Strength
 from engine.tillotson import Tillotson

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from engine.collision import Collision
 from engine.jobdir import JobDirectory, Status
-from engine.scene import scene_in
+from engine.scene.collision import Collision
+from engine.scene.scene import scene_in
 from engine.storage import write_dataset, write_json
 
 RHO0 = 2700.0

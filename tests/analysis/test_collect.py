@@ -10,8 +10,8 @@ import xarray as xr
 
 from analysis.collect import collect
 from analysis.variables import OUTCOMES, TEXTS
-from engine.collision import Collision
 from engine.errors import SceneError
+from engine.scene.collision import Collision
 from engine.storage import read_dataset, write_json
 from tests.analysis.fake_jobs import (
     RHO0,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from analysis.ledger import drifts, read_history
-from engine.collision import Collision
 from engine.errors import JobError
-from engine.scene import Scene
+from engine.scene.collision import Collision
+from engine.scene.scene import Scene
 from engine.storage import write_dataset
 from tests.analysis.fake_jobs import history
 

@@ -17,7 +17,7 @@ from rich.table import Table
 
 from engine.device import backend
 from engine.parts import allocated_bytes, parts_of
-from engine.scene import Gravity, Scene, Viscosity, Wall
+from engine.scene.scene import Gravity, Scene, Viscosity, Wall
 from engine.simulation import Simulation
 from tests.benchmarks.contact import in_contact, take_step
 from tests.benchmarks.host import commit, host

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.table import Table
 
-from engine.collision import Collision
 from engine.device import backend
 from engine.errors import RunFault
 from engine.ledger import Totals
-from engine.scene import Scene
+from engine.scene.collision import Collision
+from engine.scene.scene import Scene
 from engine.simulation import Simulation
 from engine.verification.drive import altered
 

@@ -1,6 +1,6 @@
 """The state that is timed: two bodies deep in contact, and steps from there on."""
 
-from engine.scene import Scene
+from engine.scene.scene import Scene
 from engine.simulation import Simulation
 
 

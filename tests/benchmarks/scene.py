@@ -1,8 +1,8 @@
 """The scene that is timed: a collision of two bodies, from shortly before contact."""
 
-from engine.collision import Collision
 from engine.device.precision import chosen
-from engine.scene import Gravity, Numerics, Scene
+from engine.scene.collision import Collision
+from engine.scene.scene import Gravity, Numerics, Scene
 
 
 def collision(particles: int, gravity: Gravity | None = None, start_separation: float = 1.05) -> Scene:

@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from engine.scene import Gravity
+from engine.scene.scene import Gravity
 from tests.benchmarks.child import ROOT
 from tests.benchmarks.scene import collision
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from engine.device import backend
 from engine.device.backend import Real
-from engine.scene import Gravity
+from engine.scene.scene import Gravity
 from engine.simulation import Simulation
 from tests.benchmarks.child import answer
 from tests.benchmarks.contact import in_contact, make_ready

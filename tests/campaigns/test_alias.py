@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from campaigns.alias import LONGEST, alias, belongs_to, job_id
-from engine.collision import Collision
+from engine.scene.collision import Collision
 
 SAFE = re.compile(r"[A-Za-z0-9._-]+")
 HASH = "0123456789abcdef"

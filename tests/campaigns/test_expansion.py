@@ -10,9 +10,9 @@ from campaigns.campaign import Campaign
 from campaigns.expansion import expand
 from campaigns.keys import flatten, nest, scalar_keys, value_at
 from campaigns.study import SHIPPED, Study, find_study, read_study
-from engine.collision import Collision
-from engine.materials import PARAMETER_SETS
-from engine.validation import validate
+from engine.scene.collision import Collision
+from engine.scene.fields import validate
+from engine.scene.material import PARAMETER_SETS
 
 VELOCITIES = st.lists(st.integers(50, 400), min_size=1, max_size=3, unique=True)
 ANGLES = st.lists(st.integers(0, 90), min_size=1, max_size=3, unique=True)

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from engine.collision import Collision
 from engine.jobdir import JobDirectory
+from engine.scene.collision import Collision
 from engine.storage import read_dataset
 
 

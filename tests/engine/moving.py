@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.scene import Scene
+from engine.scene.scene import Scene
 from engine.simulation import Simulation
 from tests.helpers.device import Array
 

@@ -10,8 +10,8 @@ from engine.damage import Damage
 from engine.device.backend import mat3
 from engine.energy import InternalEnergy
 from engine.fracture import Unbreakable
-from engine.materials import Material
 from engine.particles import Particles
+from engine.scene.material import Material
 from engine.shear import Fluid, Hencky
 from engine.strength import Strength, Unlimited
 from engine.tillotson import Tillotson

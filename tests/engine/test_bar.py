@@ -5,8 +5,8 @@ import pytest
 
 from engine.flaws import Flaws, draw_flaws
 from engine.fracture import Fracture
-from engine.materials import PARAMETER_SETS
-from engine.scene import Body
+from engine.scene.material import PARAMETER_SETS
+from engine.scene.scene import Body
 from tests.engine.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
 from tests.engine.point import Points
 from tests.helpers.device import Array, worst

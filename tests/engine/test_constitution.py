@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from engine import scene
+from engine.scene import scene
 from engine.viscosity import Viscosity
 from tests.engine.oracle import LONGITUDINAL, RHO0, G, K, log_strain, strength_limit, tillotson
 from tests.engine.point import Points, unpacked

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 
 from engine.flaws import Flaws, draw_flaws, join
 from engine.initial import all_flaws
-from engine.materials import PARAMETER_SETS, Fracture, Material
-from engine.scene import Body, Scene
+from engine.scene.material import PARAMETER_SETS, Fracture, Material
+from engine.scene.scene import Body, Scene
 
 COVERED, LISTED = PARAMETER_SETS["sugiura2018"].fracture, PARAMETER_SETS["talk"].fracture
 RULES = pytest.mark.parametrize("rule", [COVERED, LISTED], ids=["covered", "2NlnN"])

@@ -3,8 +3,8 @@ import pytest
 
 from engine.flaws import Flaws, draw_flaws
 from engine.fracture import Fracture, Unbreakable
-from engine.materials import PARAMETER_SETS
-from engine.scene import Body
+from engine.scene.material import PARAMETER_SETS
+from engine.scene.scene import Body
 from tests.engine.oracle import LONGITUDINAL, RHO0, G, K
 from tests.helpers.device import Array, compose, evaluate, rotations, worst
 

@@ -3,7 +3,7 @@ import pytest
 
 from engine.direct_sum import DirectSum
 from engine.particles import Particles
-from engine.sphere import sphere_points
+from engine.scene.placement import sphere_points
 from engine.tree import Tree
 from tests.helpers.device import Array, worst
 

@@ -13,15 +13,15 @@ from campaigns.display import line
 from campaigns.state import JobState, status_of
 from engine.bounds import cold_energy, compression_limit, energy_growth, speed_scale
 from engine.checkpoint import save_checkpoint
-from engine.collision import Collision
 from engine.errors import Fault, GuardFault, stop
 from engine.guard import ENERGY_GROWTH, LARGEST_DRIFT, SPEED_FACTOR, STEPS_FACTOR, Guard
 from engine.jobdir import JobDirectory, Status
 from engine.ledger import Row, as_row, totals
-from engine.materials import Material, Tillotson
 from engine.particles import Arrays, Particles
 from engine.run import Options, Run
-from engine.scene import Physics, Scene, Wall
+from engine.scene.collision import Collision
+from engine.scene.material import Material, Tillotson
+from engine.scene.scene import Physics, Scene, Wall
 from engine.simulation import Simulation
 from tests.engine.jobs import write_job
 from tests.engine.moving import body, scene

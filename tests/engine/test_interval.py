@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from engine.body import Body
 from engine.constants import G_NEWTON
 from engine.device import backend
-from engine.scene import Gravity, Numerics, Physics, Scene
+from engine.scene.bodies import Body
+from engine.scene.scene import Gravity, Numerics, Physics, Scene
 from engine.simulation import Simulation
 from engine.verification.rock import elastic
 from tests.helpers.device import Array

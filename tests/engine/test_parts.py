@@ -12,7 +12,7 @@ from engine.jobdir import JobDirectory
 from engine.particles import ALWAYS, KINDS, Particles
 from engine.parts import allocated_bytes, parts_of
 from engine.run import Options, run_job
-from engine.scene import Scene
+from engine.scene.scene import Scene
 from engine.simulation import Simulation
 from engine.storage import read_dataset
 from engine.tillotson import ColdTillotson

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import engine.simulation
-from engine.collision import Collision
 from engine.device import backend
-from engine.scene import Scene
+from engine.scene.collision import Collision
+from engine.scene.scene import Scene
 from engine.simulation import LAUNCHES, Simulation
 
 WHOLE = Collision.model_validate(

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from engine.collision import Collision
 from engine.device import backend
 from engine.particles import Arrays
-from engine.scene import Scene
+from engine.scene.collision import Collision
+from engine.scene.scene import Scene
 from engine.simulation import Simulation
 
 

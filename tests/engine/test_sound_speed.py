@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from engine.collision import Collision
 from engine.initial import initial_state
-from engine.materials import Material
-from engine.scene import Body, Physics, Scene
+from engine.scene.collision import Collision
+from engine.scene.material import Material
+from engine.scene.scene import Body, Physics, Scene
 from engine.simulation import Simulation
 from engine.verification.column import StandingWave
 from engine.verification.hydrostatic import Hydrostatic

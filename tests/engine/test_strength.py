@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from engine.materials import PARAMETER_SETS, Material
+from engine.scene.material import PARAMETER_SETS, Material
 from engine.strength import Strength, Unlimited, retained
 from tests.engine.oracle import U_MELT, strength_limit
 from tests.helpers.device import Array, evaluate, worst

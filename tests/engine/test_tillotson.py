@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from engine.materials import Material
+from engine.scene.material import Material
 from engine.tillotson import SOUND_SPEED_FLOOR, Tillotson
 from tests.engine.oracle import E0, E_CV, E_IV, RHO0, K, squared_sound_speed, tillotson
 from tests.helpers.device import Array, evaluate, worst

@@ -3,9 +3,9 @@ from collections import defaultdict
 import numpy as np
 import pytest
 
-from engine.body import Box
 from engine.initial import initial_state
-from engine.scene import Numerics, Physics, Scene
+from engine.scene.bodies import Box
+from engine.scene.scene import Numerics, Physics, Scene
 from tests.engine.moving import advance, body, one_step, rubble_collision, scene, spline, started
 from tests.engine.oracle import RHO0
 from tests.helpers.device import Array, norm, traceless, worst

@@ -6,11 +6,11 @@ import taichi as ti
 from typer.testing import CliRunner
 
 from engine.__main__ import application
-from engine.body import Box
 from engine.errors import SceneError
 from engine.initial import initial_state
-from engine.scene import Numerics, Physics, Scene, Wall
-from engine.validation import validate
+from engine.scene.bodies import Box
+from engine.scene.fields import validate
+from engine.scene.scene import Numerics, Physics, Scene, Wall
 from engine.verification.bar import Bar, Pull
 from engine.verification.catalogue import FULL, SHORT
 from engine.verification.check import Problem, difference, share

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from engine import scene
+from engine.scene import scene
 from engine.viscosity import Inviscid, Viscosity
 from tests.helpers.device import Array, evaluate, norm, worst
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.body import Body
-from engine.collision import Collision
-from engine.materials import Material
 from engine.particles import Arrays
-from engine.scene import Physics, Scene
+from engine.scene.bodies import Body
+from engine.scene.collision import Collision
+from engine.scene.material import Material
+from engine.scene.scene import Physics, Scene
 from engine.verification.drive import altered
 
 Changes = Callable[[Scene], dict[str, NDArray[Any]]]

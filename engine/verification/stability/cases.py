@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from engine.body import Body
-from engine.scene import Gravity, Physics, Scene, Viscosity
+from engine.scene.bodies import Body
+from engine.scene.scene import Gravity, Physics, Scene, Viscosity
 from engine.verification.drive import altered
 from engine.verification.rock import elastic
 from engine.verification.stability import states

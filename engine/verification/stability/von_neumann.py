@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.body import Box
 from engine.errors import GuardFault
-from engine.materials import Material
-from engine.scene import Numerics, Physics, Scene
+from engine.scene.bodies import Box
+from engine.scene.material import Material
+from engine.scene.scene import Numerics, Physics, Scene
 from engine.verification.drive import altered, begin
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 
-from engine.scene import Gravity
+from engine.scene.scene import Gravity
 
 COLORS = {"this project": "C0", "pytreegrav": "C1", "rebound": "C2"}
 DEFAULTS = {("this project", True): Gravity().opening, ("pytreegrav", False): 0.7, ("rebound", False): 0.5}

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 import engine.gravity
-from engine.collision import Collision
 from engine.device import backend
 from engine.net_effect import without_net_effect
-from engine.scene import Gravity
+from engine.scene.collision import Collision
+from engine.scene.scene import Gravity
 from engine.simulation import Simulation
 from tests.benchmarks.child import answer
 

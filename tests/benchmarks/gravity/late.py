@@ -7,11 +7,11 @@ from typing import Any
 
 import xarray as xr
 
-from engine.collision import Collision
 from engine.direct_sum import DirectSum
 from engine.gravity import SelfGravity
 from engine.run import Options, run_job
-from engine.scene import Gravity
+from engine.scene.collision import Collision
+from engine.scene.scene import Gravity
 from engine.tree import Tree
 from tests.benchmarks.child import answer
 from tests.benchmarks.gravity.curve import error

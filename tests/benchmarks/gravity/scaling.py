@@ -3,7 +3,7 @@
 from typing import Any
 
 from engine.device import backend
-from engine.scene import Gravity
+from engine.scene.scene import Gravity
 from engine.tree import Tree
 from tests.benchmarks.child import answer
 from tests.benchmarks.gravity.states import along_curve, sphere

@@ -7,8 +7,8 @@ import pytest
 
 from engine.errors import SceneError
 from engine.initial import initial_state
-from engine.scene import Body, Scene, read_scene, scene_in
-from engine.validation import validate
+from engine.scene.fields import validate
+from engine.scene.scene import Body, Scene, read_scene, scene_in
 
 BODY: dict[str, Any] = {"radius": 50e3, "particles": 1000}
 BOX: dict[str, Any] = {"size": [1.0, 1.0, 1.0], "lattice": [2, 2, 2]}

@@ -5,8 +5,8 @@ from typing import Annotated, Self
 
 from pydantic import Field
 
-from engine.materials import Material
-from engine.validation import Frozen, Number, Positive, Vector, Whole
+from engine.scene.fields import Frozen, Number, Positive, Vector, Whole
+from engine.scene.material import Material
 
 PositiveVector = tuple[Positive, Positive, Positive]
 MOST_PARTICLES = 2**30

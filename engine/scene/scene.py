@@ -5,12 +5,23 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from engine.body import MOST_PARTICLES, Body, Box
 from engine.constants import BLOCK_EDGE
 from engine.device.precision import Precision
 from engine.errors import SceneError
-from engine.materials import Fracture, Material
-from engine.validation import Finite, Frozen, NonNegative, Number, OrOff, Positive, Vector, Whole, read_table, validate
+from engine.scene.bodies import MOST_PARTICLES, Body, Box
+from engine.scene.fields import (
+    Finite,
+    Frozen,
+    NonNegative,
+    Number,
+    OrOff,
+    Positive,
+    Vector,
+    Whole,
+    read_table,
+    validate,
+)
+from engine.scene.material import Fracture, Material
 
 Fraction = Annotated[Number, Field(gt=0.0, le=1.0)]
 Seed = Annotated[Whole, Field(ge=0)]

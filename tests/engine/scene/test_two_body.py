@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from engine.orbit import Approach, apocentre, approach
+from engine.scene.two_body import Approach, apocentre, approach
 from tests.helpers.device import Array
 
 G_N, R = 6.6743e-11, 50e3

@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from engine.validation import Frozen, NonNegative, Number, Positive
+from engine.scene.fields import Frozen, NonNegative, Number, Positive
 
 
 class Tillotson(Frozen):

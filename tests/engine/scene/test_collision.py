@@ -4,11 +4,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from engine.collision import Collision
 from engine.errors import SceneError
-from engine.materials import PARAMETER_SETS, Fracture
-from engine.scene import Body, Scene
-from engine.validation import validate
+from engine.scene.collision import Collision
+from engine.scene.fields import validate
+from engine.scene.material import PARAMETER_SETS, Fracture
+from engine.scene.scene import Body, Scene
 
 G_N = 6.6743e-11
 SETTINGS = {

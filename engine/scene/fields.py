@@ -9,7 +9,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from engine.errors import SceneError
-from engine.mistakes import explain
+from engine.scene.input_errors import explain
 
 DEEPEST = 20
 """Tables and lists inside each other that an input file may hold."""

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from engine.sphere import sphere_points
+from engine.scene.placement import sphere_points
 
 RADIUS = 50e3
 

@@ -5,12 +5,12 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from engine.body import MOST_PARTICLES, Body, Count
-from engine.materials import PARAMETER_SETS, Fracture, Material
-from engine.mistakes import suggestion
-from engine.orbit import Approach, approach
-from engine.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, Viscosity
-from engine.validation import Finite, Frozen, NonNegative, Number, OrOff, Positive
+from engine.scene.bodies import MOST_PARTICLES, Body, Count
+from engine.scene.fields import Finite, Frozen, NonNegative, Number, OrOff, Positive
+from engine.scene.input_errors import suggestion
+from engine.scene.material import PARAMETER_SETS, Fracture, Material
+from engine.scene.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, Viscosity
+from engine.scene.two_body import Approach, approach
 
 
 class Collision(Frozen):
@@ -25,7 +25,7 @@ class Collision(Frozen):
     parameter_set: constants and rules of friction and fracture, `sugiura2018` or `talk`.
     friction: friction coefficient of damaged rock [-], when other than the parameter set's.
     fracture: rules of fracture that replace those of the parameter set; `false` leaves fracture out.
-    sound_speed: factor on the speed of sound, see engine.scene.Physics.
+    sound_speed: factor on the speed of sound, see engine.scene.scene.Physics.
     """
 
     velocity: Positive
