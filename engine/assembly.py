@@ -12,9 +12,9 @@ from engine.energy import Barotropic, InternalEnergy
 from engine.fracture import Fracture, Unbreakable
 from engine.gravity import SelfGravity
 from engine.initial import all_flaws
-from engine.particles import Particles
 from engine.scene.scene import Scene
 from engine.shear import Fluid, Hencky
+from engine.state.particles import Particles
 from engine.strength import Strength, Unlimited
 from engine.tillotson import ColdTillotson, Tillotson
 from engine.tree import Tree

@@ -8,9 +8,9 @@ import xarray as xr
 from engine import PHYSICS_VERSION
 from engine.errors import JobError
 from engine.jobdir import JobDirectory
-from engine.particles import Particles
 from engine.scene.scene import Scene
 from engine.simulation import Simulation
+from engine.state.particles import Particles
 from engine.storage import is_finite, read_dataset, write_dataset
 
 CLOCK = {"time": float, "dt": float, "rate": float, "step": int, "moved_out": int}

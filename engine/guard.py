@@ -12,8 +12,8 @@ from engine.bounds import compression_limit, energy_growth, keeps_energy, keeps_
 from engine.device.backend import EPSILON
 from engine.errors import SMALLER_STEPS, stop
 from engine.ledger import Row
-from engine.particles import Arrays, Particles
 from engine.scene.scene import Scene
+from engine.state.particles import Arrays, Particles
 from engine.transfer import LARGEST_INCREMENT
 
 SPEED_FACTOR = 10.0

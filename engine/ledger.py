@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.particles import Arrays
+from engine.state.particles import Arrays
 
 Vector = NDArray[np.float64]
 Row = dict[str, NDArray[np.float64]]

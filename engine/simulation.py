@@ -8,17 +8,17 @@ from numpy.typing import NDArray
 
 from engine import assembly
 from engine.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
-from engine.clock import FAULT_NONE, Clock
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity import SelfGravity
 from engine.initial import initial_state
 from engine.ledger import Totals, elastic_energy, half_step_work, totals
-from engine.particles import Arrays, Particles
 from engine.scene.bodies import Solid
 from engine.scene.material import Material
 from engine.scene.scene import Scene
+from engine.state.clock import FAULT_NONE, Clock
+from engine.state.particles import Arrays, Particles
 from engine.transfer import LARGEST_INCREMENT, Transfer
 
 LAUNCHES = 64

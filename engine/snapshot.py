@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from engine.history import SPACE
-from engine.particles import Arrays
+from engine.state.particles import Arrays
 
 ATTRIBUTES = {
     "position": ("position", "m"),

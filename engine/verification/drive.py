@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.particles import Arrays
 from engine.scene.fields import Model
 from engine.scene.scene import Scene
 from engine.simulation import Simulation
+from engine.state.particles import Arrays
 
 Array = NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from engine.device.backend import Real, mat3
 from engine.energy import InternalEnergy
 from engine.flaws import Flaws
 from engine.fracture import Fracture
-from engine.particles import Particles
 from engine.scene import material as materials
 from engine.scene.bodies import Body
 from engine.shear import Hencky
+from engine.state.particles import Particles
 from engine.strength import Strength
 from engine.tillotson import Tillotson
 from engine.viscosity import Inviscid

@@ -6,8 +6,8 @@ import numpy as np
 
 from engine import assembly
 from engine.constitution import Constitution
-from engine.particles import Arrays, Particles
 from engine.simulation import Simulation
+from engine.state.particles import Arrays, Particles
 from tests.benchmarks.contact import take_step
 from tests.benchmarks.dense import DenseTransfer
 from tests.benchmarks.stretch import StretchConstitution

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from engine.device.backend import mat3, vec3, vec4
 from engine.device.tensors import unpack
-from engine.particles import Particles
 from engine.spline import spline_weights
+from engine.state.particles import Particles
 from engine.transfer import affine_velocity
 
 MARGIN = 2

@@ -10,7 +10,7 @@ from rich.table import Table
 from engine.device import backend
 from engine.device.backend import mat3, overwrite, vec3, vec6
 from engine.device.tensors import deviator, half_log, unpack
-from engine.particles import Arrays
+from engine.state.particles import Arrays
 from tests.benchmarks.stopwatch import Stopwatch
 from tests.benchmarks.stretch import deformation_gradient
 

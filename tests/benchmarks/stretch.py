@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from engine.constitution import Constitution, ddot, strain_increment
 from engine.device.backend import mat3, overwrite, vec3
 from engine.device.tensors import identity, pack, unpack
-from engine.particles import Arrays
+from engine.state.particles import Arrays
 from engine.strength import retained
 
 

@@ -10,9 +10,9 @@ from engine.damage import Damage
 from engine.device.backend import mat3
 from engine.energy import InternalEnergy
 from engine.fracture import Unbreakable
-from engine.particles import Particles
 from engine.scene.material import Material
 from engine.shear import Fluid, Hencky
+from engine.state.particles import Particles
 from engine.strength import Strength, Unlimited
 from engine.tillotson import Tillotson
 from engine.viscosity import Inviscid

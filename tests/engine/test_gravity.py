@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from engine.direct_sum import DirectSum
-from engine.particles import Particles
 from engine.scene.placement import sphere_points
+from engine.state.particles import Particles
 from engine.tree import Tree
 from tests.helpers.device import Array, worst
 

@@ -17,12 +17,12 @@ from engine.errors import Fault, GuardFault, stop
 from engine.guard import ENERGY_GROWTH, LARGEST_DRIFT, SPEED_FACTOR, STEPS_FACTOR, Guard
 from engine.jobdir import JobDirectory, Status
 from engine.ledger import Row, as_row, totals
-from engine.particles import Arrays, Particles
 from engine.run import Options, Run
 from engine.scene.collision import Collision
 from engine.scene.material import Material, Tillotson
 from engine.scene.scene import Physics, Scene, Wall
 from engine.simulation import Simulation
+from engine.state.particles import Arrays, Particles
 from tests.engine.jobs import write_job
 from tests.engine.moving import body, scene
 

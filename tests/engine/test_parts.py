@@ -9,11 +9,11 @@ from taichi.lang.kernel_impl import Func, Kernel
 from engine.checkpoint import load_checkpoint, save_checkpoint
 from engine.gravity import SelfGravity
 from engine.jobdir import JobDirectory
-from engine.particles import ALWAYS, KINDS, Particles
 from engine.parts import allocated_bytes, parts_of
 from engine.run import Options, run_job
 from engine.scene.scene import Scene
 from engine.simulation import Simulation
+from engine.state.particles import ALWAYS, KINDS, Particles
 from engine.storage import read_dataset
 from engine.tillotson import ColdTillotson
 from engine.verification.column import StandingWave

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from engine.device import backend
-from engine.particles import Arrays
 from engine.scene.collision import Collision
 from engine.scene.scene import Scene
 from engine.simulation import Simulation
+from engine.state.particles import Arrays
 
 
 def scattering() -> Scene:

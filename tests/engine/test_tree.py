@@ -8,9 +8,9 @@ from engine.constants import G_NEWTON
 from engine.device import backend
 from engine.direct_sum import DirectSum
 from engine.gravity import SelfGravity
-from engine.particles import Particles
 from engine.scene.placement import sphere_points
 from engine.scene.scene import Gravity
+from engine.state.particles import Particles
 from engine.tree import Tree
 from tests.engine.monopoles import Monopoles
 from tests.helpers.device import Array

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.particles import Arrays
 from engine.scene.bodies import Body
 from engine.scene.collision import Collision
 from engine.scene.material import Material
 from engine.scene.scene import Physics, Scene
+from engine.state.particles import Arrays
 from engine.verification.drive import altered
 
 Changes = Callable[[Scene], dict[str, NDArray[Any]]]

@@ -6,8 +6,8 @@ from engine.blocks import HALF_RANGE
 from engine.bounds import cold_energy
 from engine.constants import BLOCK_EDGE
 from engine.initial import initial_state
-from engine.particles import Arrays
 from engine.scene.scene import Scene
+from engine.state.particles import Arrays
 from engine.verification.rock import condensed_pressure
 from engine.verification.stability.case import Changes
 

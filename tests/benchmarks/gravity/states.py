@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.particles import Particles
+from engine.state.particles import Particles
 
 SPHERE, LATE = "uniform sphere", "late collision"
 PER_BODY = 20_000

@@ -10,9 +10,9 @@ from engine.direct_sum import DirectSum
 from engine.errors import GuardFault
 from engine.guard import Guard
 from engine.ledger import as_row
-from engine.particles import Particles
 from engine.scene.placement import sphere_points
 from engine.snapshot import FIELDS, snapshot
+from engine.state.particles import Particles
 from engine.transfer import affine_velocity
 from engine.tree import Tree
 from tests.engine.moving import RUBBLE, advance, body, rubble_collision, scene, started

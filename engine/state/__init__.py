@@ -1,0 +1,1 @@
+"""State of a simulation on the device: particles and clock."""
