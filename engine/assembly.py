@@ -5,21 +5,21 @@ What a scene leaves out is stood for by a part that holds no field and does noth
 
 from typing import Any
 
-from engine.constitution import Constitution
-from engine.damage import Damage, Intact
 from engine.direct_sum import DirectSum
-from engine.energy import Barotropic, InternalEnergy
-from engine.fracture import Fracture, Unbreakable
 from engine.gravity import SelfGravity
 from engine.initial import all_flaws
+from engine.laws.constitution import Constitution
+from engine.laws.damage import Damage, Intact
+from engine.laws.energy import Barotropic, InternalEnergy
+from engine.laws.fracture import Fracture, Unbreakable
+from engine.laws.shear import Fluid, Hencky
+from engine.laws.strength import Strength, Unlimited
+from engine.laws.tillotson import ColdTillotson, Tillotson
+from engine.laws.viscosity import Inviscid, Viscosity
 from engine.scene.scene import Scene
-from engine.shear import Fluid, Hencky
 from engine.state.particles import Particles
-from engine.strength import Strength, Unlimited
-from engine.tillotson import ColdTillotson, Tillotson
 from engine.tree import Tree
 from engine.uniform_gravity import UniformGravity, Weightless
-from engine.viscosity import Inviscid, Viscosity
 from engine.walls import Walls
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.constants import G_NEWTON
-from engine.flaws import Flaws, draw_flaws, join
+from engine.laws.flaws import Flaws, draw_flaws, join
 from engine.scene.bodies import Body, Box, Solid
 from engine.scene.cuboid import box_points
 from engine.scene.material import Material

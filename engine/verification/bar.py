@@ -5,7 +5,7 @@ from math import inf
 
 import numpy as np
 
-from engine.flaws import Flaws, draw_flaws
+from engine.laws.flaws import Flaws, draw_flaws
 from engine.scene.bodies import Body
 from engine.scene.material import Fracture, Material
 from engine.verification.check import Check, share

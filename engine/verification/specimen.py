@@ -3,19 +3,19 @@
 import numpy as np
 import taichi as ti
 
-from engine.constitution import Constitution
-from engine.damage import Damage
 from engine.device.backend import Real, mat3
-from engine.energy import InternalEnergy
-from engine.flaws import Flaws
-from engine.fracture import Fracture
+from engine.laws.constitution import Constitution
+from engine.laws.damage import Damage
+from engine.laws.energy import InternalEnergy
+from engine.laws.flaws import Flaws
+from engine.laws.fracture import Fracture
+from engine.laws.shear import Hencky
+from engine.laws.strength import Strength
+from engine.laws.tillotson import Tillotson
+from engine.laws.viscosity import Inviscid
 from engine.scene import material as materials
 from engine.scene.bodies import Body
-from engine.shear import Hencky
 from engine.state.particles import Particles
-from engine.strength import Strength
-from engine.tillotson import Tillotson
-from engine.viscosity import Inviscid
 
 
 @ti.data_oriented

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine import assembly
-from engine.constitution import Constitution
+from engine.laws.constitution import Constitution
 from engine.simulation import Simulation
 from engine.state.particles import Arrays, Particles
 from tests.benchmarks.contact import take_step

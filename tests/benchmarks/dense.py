@@ -26,7 +26,7 @@ class DenseTransfer:
 
     Args:
         particles: state of the particles.
-        constitution: response of one particle, with the interface of `engine.constitution`.
+        constitution: response of one particle, with the interface of `engine.laws.constitution`.
         gravity: acceleration of one particle, likewise.
         dx: grid spacing [m].
     """

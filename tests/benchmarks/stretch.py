@@ -9,11 +9,11 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.constitution import Constitution, ddot, strain_increment
 from engine.device.backend import mat3, overwrite, vec3
 from engine.device.tensors import identity, pack, unpack
+from engine.laws.constitution import Constitution, ddot, strain_increment
+from engine.laws.strength import retained
 from engine.state.particles import Arrays
-from engine.strength import retained
 
 
 @ti.data_oriented

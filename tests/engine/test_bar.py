@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from engine.flaws import Flaws, draw_flaws
-from engine.fracture import Fracture
+from engine.laws.flaws import Flaws, draw_flaws
+from engine.laws.fracture import Fracture
 from engine.scene.material import PARAMETER_SETS
 from engine.scene.scene import Body
-from tests.engine.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
-from tests.engine.point import Points
 from tests.helpers.device import Array, worst
+from tests.helpers.material_point import Points
+from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -10,8 +10,8 @@ from engine.scene.scene import Body, Physics, Scene
 from engine.simulation import Simulation
 from engine.verification.column import StandingWave
 from engine.verification.hydrostatic import Hydrostatic
-from tests.engine.oracle import LONGITUDINAL, RHO0
 from tests.helpers.device import evaluate
+from tests.helpers.oracle import LONGITUDINAL, RHO0
 
 
 def test_all_waves_travel_at_the_factor_and_strength_stays():

@@ -3,8 +3,8 @@ import pytest
 
 from engine.simulation import Simulation
 from tests.engine.moving import RUBBLE, body, one_step, scene, started
-from tests.engine.oracle import LONGITUDINAL, RHO0, G, squared_sound_speed
 from tests.helpers.device import Array
+from tests.helpers.oracle import LONGITUDINAL, RHO0, G, squared_sound_speed
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -7,8 +7,8 @@ from engine.initial import initial_state
 from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene
 from tests.engine.moving import advance, body, one_step, rubble_collision, scene, spline, started
-from tests.engine.oracle import RHO0
 from tests.helpers.device import Array, norm, traceless, worst
+from tests.helpers.oracle import RHO0
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

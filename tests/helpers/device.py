@@ -72,7 +72,7 @@ def norm(tensors: Array) -> Array:
 
 
 COMPARED: dict[str, tuple[int, float]] = {}
-"""Inputs tried and largest error by test, filled by `worst` and printed by tests/engine/laws.py."""
+"""Inputs tried and largest error by test, filled by `worst` and printed by tests/helpers/laws.py."""
 
 
 def worst(found: Array, expected: Array, scale: Array | float) -> float:

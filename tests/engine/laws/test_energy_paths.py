@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.engine.oracle import RHO0, G, log_strain, tillotson
-from tests.engine.point import Points
 from tests.helpers.device import norm, traceless
+from tests.helpers.material_point import Points
+from tests.helpers.oracle import RHO0, G, log_strain, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -19,8 +19,8 @@ from engine.device.tensors import (
     pack,
     unpack,
 )
+from engine.laws.strength import retained
 from engine.scene.material import Material
-from engine.strength import retained
 
 SMALL_GROWTH = 0.1
 """Change of volume in one step up to which its powers come from a series."""

@@ -6,7 +6,7 @@ import taichi as ti
 
 from engine.device.backend import Real, filled
 from engine.device.tensors import largest_eigenvalue, norm_squared
-from engine.flaws import Flaws
+from engine.laws.flaws import Flaws
 from engine.scene import material as materials
 from engine.scene.bodies import Solid
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
+from engine.laws.viscosity import Viscosity
 from engine.scene import scene
-from engine.viscosity import Viscosity
-from tests.engine.oracle import LONGITUDINAL, RHO0, G, K, log_strain, strength_limit, tillotson
-from tests.engine.point import Points, unpacked
 from tests.helpers.device import Array, norm, rotations, traceless, worst
+from tests.helpers.material_point import Points, unpacked
+from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, log_strain, strength_limit, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

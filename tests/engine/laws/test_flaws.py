@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.flaws import Flaws, draw_flaws, join
 from engine.initial import all_flaws
+from engine.laws.flaws import Flaws, draw_flaws, join
 from engine.scene.material import PARAMETER_SETS, Fracture, Material
 from engine.scene.scene import Body, Scene
 

@@ -1,4 +1,4 @@
-"""`python -m tests.engine.laws`: every law with the largest error its tests find, and how many inputs they try."""
+"""`python -m tests.helpers.laws`: every law with the largest error its tests find, and how many inputs they try."""
 
 import sys
 from pathlib import Path

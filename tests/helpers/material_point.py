@@ -5,17 +5,17 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from engine.constitution import Constitution
-from engine.damage import Damage
 from engine.device.backend import mat3
-from engine.energy import InternalEnergy
-from engine.fracture import Unbreakable
+from engine.laws.constitution import Constitution
+from engine.laws.damage import Damage
+from engine.laws.energy import InternalEnergy
+from engine.laws.fracture import Unbreakable
+from engine.laws.shear import Fluid, Hencky
+from engine.laws.strength import Strength, Unlimited
+from engine.laws.tillotson import Tillotson
+from engine.laws.viscosity import Inviscid
 from engine.scene.material import Material
-from engine.shear import Fluid, Hencky
 from engine.state.particles import Particles
-from engine.strength import Strength, Unlimited
-from engine.tillotson import Tillotson
-from engine.viscosity import Inviscid
 from tests.helpers.device import Array
 
 Gradients = ti.types.ndarray(dtype=mat3, ndim=1)

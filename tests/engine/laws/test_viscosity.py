@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from engine.laws.viscosity import Inviscid, Viscosity
 from engine.scene import scene
-from engine.viscosity import Inviscid, Viscosity
 from tests.helpers.device import Array, evaluate, norm, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from engine.laws.strength import Strength, Unlimited, retained
 from engine.scene.material import PARAMETER_SETS, Material
-from engine.strength import Strength, Unlimited, retained
-from tests.engine.oracle import U_MELT, strength_limit
 from tests.helpers.device import Array, evaluate, worst
+from tests.helpers.oracle import U_MELT, strength_limit
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

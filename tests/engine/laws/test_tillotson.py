@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from engine.laws.tillotson import SOUND_SPEED_FLOOR, Tillotson
 from engine.scene.material import Material
-from engine.tillotson import SOUND_SPEED_FLOOR, Tillotson
-from tests.engine.oracle import E0, E_CV, E_IV, RHO0, K, squared_sound_speed, tillotson
 from tests.helpers.device import Array, evaluate, worst
+from tests.helpers.oracle import E0, E_CV, E_IV, RHO0, K, squared_sound_speed, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

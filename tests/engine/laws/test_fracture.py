@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
-from engine.flaws import Flaws, draw_flaws
-from engine.fracture import Fracture, Unbreakable
+from engine.laws.flaws import Flaws, draw_flaws
+from engine.laws.fracture import Fracture, Unbreakable
 from engine.scene.material import PARAMETER_SETS
 from engine.scene.scene import Body
-from tests.engine.oracle import LONGITUDINAL, RHO0, G, K
 from tests.helpers.device import Array, compose, evaluate, rotations, worst
+from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

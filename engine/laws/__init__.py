@@ -1,0 +1,1 @@
+"""The response of one particle to its deformation; no grid."""
