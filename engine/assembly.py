@@ -5,8 +5,10 @@ What a scene leaves out is stood for by a part that holds no field and does noth
 
 from typing import Any
 
-from engine.direct_sum import DirectSum
-from engine.gravity import SelfGravity
+from engine.gravity.barnes_hut import Tree
+from engine.gravity.direct_sum import DirectSum
+from engine.gravity.self_gravity import SelfGravity
+from engine.gravity.uniform import UniformGravity, Weightless
 from engine.initial import all_flaws
 from engine.laws.constitution import Constitution
 from engine.laws.damage import Damage, Intact
@@ -18,8 +20,6 @@ from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
 from engine.scene.scene import Scene
 from engine.state.particles import Particles
-from engine.tree import Tree
-from engine.uniform_gravity import UniformGravity, Weightless
 from engine.walls import Walls
 
 

@@ -11,7 +11,7 @@ from engine.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
-from engine.gravity import SelfGravity
+from engine.gravity.self_gravity import SelfGravity
 from engine.initial import initial_state
 from engine.ledger import Totals, elastic_energy, half_step_work, totals
 from engine.scene.bodies import Solid

@@ -7,7 +7,7 @@ import pytest
 from taichi.lang.kernel_impl import Func, Kernel
 
 from engine.checkpoint import load_checkpoint, save_checkpoint
-from engine.gravity import SelfGravity
+from engine.gravity.self_gravity import SelfGravity
 from engine.jobdir import JobDirectory
 from engine.laws.tillotson import ColdTillotson
 from engine.parts import allocated_bytes, parts_of

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.constants import G_NEWTON
-from engine.direct_sum import DirectSum
-from engine.tree import Tree
+from engine.gravity.barnes_hut import Tree
+from engine.gravity.direct_sum import DirectSum
 from tests.benchmarks.gravity.states import State
-from tests.engine.monopoles import Monopoles
+from tests.helpers.monopoles import Monopoles
 
 Pull = NDArray[np.float64]
 GROUP = 16

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-import engine.gravity
+import engine.gravity.self_gravity
 from engine.device import backend
-from engine.net_effect import without_net_effect
+from engine.gravity.net_force import without_net_effect
 from engine.scene.collision import Collision
 from engine.scene.scene import Gravity
 from engine.simulation import Simulation
@@ -19,7 +19,10 @@ def measure(interval: float, corrected: bool) -> dict[str, Any]:
     """Drift of energy and angular momentum of a (100 m/s, 15 deg) collision; `corrected` as the engine does it."""
     backend.start(threads=1)
     if not corrected:
-        engine.gravity.without_net_effect = lambda pull, x, mass: (pull, without_net_effect(pull, x, mass)[1])
+        engine.gravity.self_gravity.without_net_effect = lambda pull, x, mass: (
+            pull,
+            without_net_effect(pull, x, mass)[1],
+        )
     gravity = Gravity(interval=interval)
     collision = Collision(velocity=100.0, angle=15.0, particles=PARTICLES, end_time=AFTER_CONTACT, gravity=gravity)
     simulation = Simulation(collision.scene())

@@ -7,12 +7,12 @@ from typing import Any
 
 import xarray as xr
 
-from engine.direct_sum import DirectSum
-from engine.gravity import SelfGravity
+from engine.gravity.barnes_hut import Tree
+from engine.gravity.direct_sum import DirectSum
+from engine.gravity.self_gravity import SelfGravity
 from engine.run import Options, run_job
 from engine.scene.collision import Collision
 from engine.scene.scene import Gravity
-from engine.tree import Tree
 from tests.benchmarks.child import answer
 from tests.benchmarks.gravity.curve import error
 from tests.benchmarks.gravity.states import PER_BODY, State, save

@@ -3,8 +3,8 @@
 from typing import Any
 
 from engine.device import backend
+from engine.gravity.barnes_hut import Tree
 from engine.scene.scene import Gravity
-from engine.tree import Tree
 from tests.benchmarks.child import answer
 from tests.benchmarks.gravity.states import along_curve, sphere
 from tests.benchmarks.stopwatch import Stopwatch

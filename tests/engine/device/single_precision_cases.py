@@ -6,15 +6,15 @@ import taichi as ti
 
 from engine.constants import G_NEWTON
 from engine.device.backend import PRECISION, mat3
-from engine.direct_sum import DirectSum
 from engine.errors import GuardFault
+from engine.gravity.barnes_hut import Tree
+from engine.gravity.direct_sum import DirectSum
 from engine.guard import Guard
 from engine.ledger import as_row
 from engine.scene.placement import sphere_points
 from engine.snapshot import FIELDS, snapshot
 from engine.state.particles import Particles
 from engine.transfer import affine_velocity
-from engine.tree import Tree
 from tests.engine.moving import RUBBLE, advance, body, rubble_collision, scene, started
 from tests.helpers.device import Array
 

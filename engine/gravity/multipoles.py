@@ -13,8 +13,8 @@ import taichi as ti
 
 from engine.device.backend import Real, capacity, mat3, vec3, vec4, vec6
 from engine.device.tensors import identity, pack, unpack
-from engine.gravity import LANES, Places, SelfGravity, Vectors
-from engine.halves import halve
+from engine.gravity.median_partition import halve
+from engine.gravity.self_gravity import LANES, Places, SelfGravity, Vectors
 
 LEAF = 24
 """Most particles in a leaf: three rows."""

@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from engine.device.backend import TASK, on_gpu
-from engine.gravity import LANES, Places, SelfGravity, Vectors
+from engine.gravity.self_gravity import LANES, Places, SelfGravity, Vectors
 
 
 @ti.data_oriented

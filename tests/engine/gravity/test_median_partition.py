@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from engine.halves import halve
+from engine.gravity.median_partition import halve
 from tests.helpers.device import Array
 
 

@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-import engine.tree
+import engine.gravity.barnes_hut
 from engine.constants import G_NEWTON
 from engine.device import backend
-from engine.direct_sum import DirectSum
-from engine.gravity import SelfGravity
+from engine.gravity.barnes_hut import Tree
+from engine.gravity.direct_sum import DirectSum
+from engine.gravity.self_gravity import SelfGravity
 from engine.scene.placement import sphere_points
 from engine.scene.scene import Gravity
 from engine.state.particles import Particles
-from engine.tree import Tree
-from tests.engine.monopoles import Monopoles
 from tests.helpers.device import Array
+from tests.helpers.monopoles import Monopoles
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -113,7 +113,7 @@ def test_nodes_are_collected_in_batches_of_any_size(monkeypatch) -> None:
     particles = with_particles(uniform(3000))
     usual = Tree(particles, RADIUS, 0.3).pull(0.0)
     for batch in (1, 7, 4096):
-        monkeypatch.setattr(engine.tree, "BATCH", batch)
+        monkeypatch.setattr(engine.gravity.barnes_hut, "BATCH", batch)
         np.testing.assert_allclose(Tree(particles, RADIUS, 0.3).pull(0.0), usual, rtol=1e-12, atol=1e-12)
 
 

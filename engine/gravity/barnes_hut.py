@@ -8,7 +8,7 @@ from typing import Any
 import taichi as ti
 
 from engine.device.backend import TASK, capacity, on_gpu, vec3
-from engine.multipoles import Multipoles
+from engine.gravity.multipoles import Multipoles
 
 BATCH = 64
 """Nodes that a group of targets collects before they act on it."""

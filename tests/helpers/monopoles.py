@@ -4,7 +4,7 @@ from typing import Any
 
 import taichi as ti
 
-from engine.tree import Tree
+from engine.gravity.barnes_hut import Tree
 
 
 @ti.data_oriented

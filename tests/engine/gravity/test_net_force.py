@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from engine.net_effect import without_net_effect
+from engine.gravity.net_force import without_net_effect
 from tests.helpers.device import Array, worst
 
 

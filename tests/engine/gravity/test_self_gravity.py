@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from engine.direct_sum import DirectSum
+from engine.gravity.barnes_hut import Tree
+from engine.gravity.direct_sum import DirectSum
 from engine.scene.placement import sphere_points
 from engine.state.particles import Particles
-from engine.tree import Tree
 from tests.helpers.device import Array, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")

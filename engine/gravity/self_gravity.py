@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from engine.constants import G_NEWTON
 from engine.device.backend import Real, capacity, on_gpu, overwrite
-from engine.net_effect import NetEffect, without_net_effect
+from engine.gravity.net_force import NetEffect, without_net_effect
 
 LANES = 8
 """Targets that one CPU thread serves at once: as many doubles as the widest registers hold."""

@@ -1,0 +1,1 @@
+"""Gravity: of all particles on each other, or uniform."""
