@@ -18,9 +18,9 @@ from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
+from engine.mpm.walls import Walls
 from engine.scene.scene import Scene
 from engine.state.particles import Particles
-from engine.walls import Walls
 
 
 def constitution(scene: Scene, particles: Particles) -> Constitution:

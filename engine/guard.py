@@ -12,9 +12,9 @@ from engine.bounds import compression_limit, energy_growth, keeps_energy, keeps_
 from engine.device.backend import EPSILON
 from engine.errors import SMALLER_STEPS, stop
 from engine.ledger import Row
+from engine.mpm.transfer import LARGEST_INCREMENT
 from engine.scene.scene import Scene
 from engine.state.particles import Arrays, Particles
-from engine.transfer import LARGEST_INCREMENT
 
 SPEED_FACTOR = 10.0
 """Largest speed in units of the scene's: rebounds reach two or three of them, jets a few."""

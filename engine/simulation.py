@@ -7,19 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine import assembly
-from engine.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity.self_gravity import SelfGravity
 from engine.initial import initial_state
 from engine.ledger import Totals, elastic_energy, half_step_work, totals
+from engine.mpm.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
+from engine.mpm.transfer import LARGEST_INCREMENT, Transfer
 from engine.scene.bodies import Solid
 from engine.scene.material import Material
 from engine.scene.scene import Scene
 from engine.state.clock import FAULT_NONE, Clock
 from engine.state.particles import Arrays, Particles
-from engine.transfer import LARGEST_INCREMENT, Transfer
 
 LAUNCHES = 64
 """Most steps launched before the host looks whether they ran."""
@@ -160,7 +160,7 @@ class Simulation:
         return max(max(speeds) / (scene.numerics.cfl * scene.dx), self._rate_of_state(state))
 
     def _rate_of_state(self, state: Arrays) -> float:
-        """Inverse time step [1/s] that motion and stress inside particles demand (engine/transfer.py)."""
+        """Inverse time step [1/s] that motion and stress inside particles demand (engine/mpm/transfer.py)."""
         stress = np.sqrt(np.sum(state["tau"] ** 2 * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0], axis=1))
         release = 4.0 * float((stress / self.rho0(state)).max()) / self.scene.dx**2
         strain = float(np.linalg.norm(state["C"], axis=(1, 2)).max())

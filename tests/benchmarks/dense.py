@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from engine.device.backend import mat3, vec3, vec4
 from engine.device.tensors import unpack
-from engine.spline import spline_weights
+from engine.mpm.spline import spline_weights
+from engine.mpm.transfer import affine_velocity
 from engine.state.particles import Particles
-from engine.transfer import affine_velocity
 
 MARGIN = 2
 """Cells by which particles may leave the box that holds them at first."""

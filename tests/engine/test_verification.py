@@ -137,7 +137,7 @@ def test_the_affine_velocity_of_the_talk_gains_angular_momentum(monkeypatch):
     def published(L, dt, j):
         return L @ (ti.Matrix.identity(ti.f64, 3) + dt * L).inverse()
 
-    monkeypatch.setattr("engine.transfer.affine_velocity", published)
+    monkeypatch.setattr("engine.mpm.transfer.affine_velocity", published)
     before, after = Rubble(particles=300).drift()
     assert after / before > 1.01
 
@@ -195,7 +195,7 @@ def test_a_wall_takes_away_what_moves_into_it():
     [(0.0, (3.0, 0.0, 4.0)), (0.5, (2.7, 0.0, 3.6)), (6.0, (0.0, 0.0, 0.0)), ("stick", (0.0, 0.0, 0.0))],
 )
 def test_a_wall_slows_a_node_by_coulombs_impulse(friction, expected):
-    from engine.walls import Walls
+    from engine.mpm.walls import Walls
 
     walls = Walls([Wall(normal=(0.0, 1.0, 0.0), friction=friction)])
     held = ti.Vector.field(3, ti.f64, 3)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from engine.blocks import HALF_RANGE
 from engine.bounds import cold_energy
 from engine.constants import BLOCK_EDGE
 from engine.initial import initial_state
+from engine.mpm.blocks import HALF_RANGE
 from engine.scene.scene import Scene
 from engine.state.particles import Arrays
 from engine.verification.rock import condensed_pressure

@@ -11,10 +11,10 @@ from engine.gravity.barnes_hut import Tree
 from engine.gravity.direct_sum import DirectSum
 from engine.guard import Guard
 from engine.ledger import as_row
+from engine.mpm.transfer import affine_velocity
 from engine.scene.placement import sphere_points
 from engine.snapshot import FIELDS, snapshot
 from engine.state.particles import Particles
-from engine.transfer import affine_velocity
 from tests.engine.moving import RUBBLE, advance, body, rubble_collision, scene, started
 from tests.helpers.device import Array
 

@@ -11,10 +11,10 @@ import numpy as np
 import taichi as ti
 import taichi.math as tm
 
-from engine.blocks import Blocks
 from engine.device.backend import EPSILON, TASK, Real, capacity, mat3, on_gpu, overwrite, vec3, vec4
 from engine.device.tensors import determinant_increment, identity, norm_squared, symmetric, unpack
-from engine.spline import moments, own_share, spline_weights
+from engine.mpm.blocks import Blocks
+from engine.mpm.spline import moments, own_share, spline_weights
 from engine.state.clock import FAULT_INVERTED, Clock
 
 SPAN = 8

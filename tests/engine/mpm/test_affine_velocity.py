@@ -5,7 +5,7 @@ import pytest
 import taichi as ti
 
 from engine.device.backend import mat3
-from engine.transfer import affine_velocity
+from engine.mpm.transfer import affine_velocity
 from tests.engine.moving import advance, body, scene, started
 from tests.helpers.device import Array, worst
 

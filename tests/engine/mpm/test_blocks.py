@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.blocks import Blocks, block_of, build_blocks, out_of_range
+from engine.mpm.blocks import Blocks, block_of, build_blocks, out_of_range
 from tests.helpers.device import Array
 
 DX = 3.0

@@ -1,0 +1,1 @@
+"""The Material Point Method: the grid and the transfer to it and back."""
