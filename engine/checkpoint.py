@@ -9,7 +9,7 @@ from engine import PHYSICS_VERSION
 from engine.errors import JobError
 from engine.jobdir import JobDirectory
 from engine.scene.scene import Scene
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from engine.state.particles import Particles
 from engine.storage import is_finite, read_dataset, write_dataset
 

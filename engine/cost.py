@@ -12,7 +12,7 @@ from engine.device import backend
 from engine.jobdir import JobDirectory
 from engine.parts import parts_of
 from engine.scene.scene import Scene, scene_at
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 
 
 @dataclass

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from engine.ledger import Row
+from engine.simulation.conservation import Row
 
 ATTRIBUTES = {
     "time": ("time after point-mass contact", "s"),

@@ -17,13 +17,13 @@ from engine import PHYSICS_VERSION
 from engine.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
 from engine.device import backend
 from engine.errors import Fault, GuardFault, JobError, SceneError
-from engine.guard import Guard
 from engine.history import History
 from engine.jobdir import HEARTBEAT_PERIOD, JobDirectory, Status
-from engine.ledger import Row, as_row
 from engine.provenance import record_session
 from engine.scene.scene import Scene, scene_in
-from engine.simulation import Simulation
+from engine.simulation.conservation import Row, as_row
+from engine.simulation.guard import Guard
+from engine.simulation.simulation import Simulation
 from engine.snapshot import FIELDS, snapshot
 from engine.storage import read_dataset, write_dataset
 

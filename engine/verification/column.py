@@ -7,10 +7,10 @@ from math import inf
 import numpy as np
 from scipy.optimize import curve_fit
 
-from engine.initial import initial_state
 from engine.scene.bodies import Box
 from engine.scene.material import Material
 from engine.scene.scene import Numerics, Physics, Scene
+from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, difference, share
 from engine.verification.drive import Array, begin, fitted_order, follow
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from engine.scene.fields import Model
 from engine.scene.scene import Scene
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from engine.state.particles import Arrays
 
 Array = NDArray[np.float64]

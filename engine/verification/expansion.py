@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.initial import initial_state
 from engine.scene.bodies import Body
 from engine.scene.scene import Physics, Scene
+from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, difference
 from engine.verification.drive import Moment, begin, follow
 

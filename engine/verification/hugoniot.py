@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from engine.initial import initial_state
 from engine.scene.bodies import Box
 from engine.scene.material import Material
 from engine.scene.scene import Numerics, Physics, Scene, Viscosity
+from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, share
 from engine.verification.drive import Array, Moment, begin, follow
 from engine.verification.rock import condensed_pressure

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.ledger import Totals
 from engine.scene.bodies import Body
 from engine.scene.scene import Physics, Scene
+from engine.simulation.conservation import Totals
 from engine.verification.check import Check, share
 from engine.verification.drive import begin, follow
 

@@ -5,9 +5,9 @@ from math import inf
 
 import numpy as np
 
-from engine.initial import initial_state
 from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene, Wall
+from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, difference, share
 from engine.verification.drive import Array, begin, follow
 from engine.verification.rock import elastic

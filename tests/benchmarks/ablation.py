@@ -18,7 +18,7 @@ from rich.table import Table
 from engine.device import backend
 from engine.parts import allocated_bytes, parts_of
 from engine.scene.scene import Gravity, Scene, Viscosity, Wall
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from tests.benchmarks.contact import in_contact, take_step
 from tests.benchmarks.host import commit, host
 from tests.benchmarks.scene import collision

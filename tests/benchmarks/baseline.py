@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from engine import assembly
 from engine.laws.constitution import Constitution
-from engine.simulation import Simulation
+from engine.simulation import assembly
+from engine.simulation.simulation import Simulation
 from engine.state.particles import Arrays, Particles
 from tests.benchmarks.contact import take_step
 from tests.benchmarks.dense import DenseTransfer

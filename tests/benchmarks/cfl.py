@@ -8,10 +8,10 @@ from rich.table import Table
 
 from engine.device import backend
 from engine.errors import RunFault
-from engine.ledger import Totals
 from engine.scene.collision import Collision
 from engine.scene.scene import Scene
-from engine.simulation import Simulation
+from engine.simulation.conservation import Totals
+from engine.simulation.simulation import Simulation
 from engine.verification.drive import altered
 
 PARTICLES = 1_000

@@ -1,7 +1,7 @@
 """The state that is timed: two bodies deep in contact, and steps from there on."""
 
 from engine.scene.scene import Scene
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 
 
 def in_contact(scene: Scene, time: float) -> Simulation:

@@ -2,7 +2,7 @@
 
 from engine.mpm.transfer import COPY
 from engine.parts import allocated_bytes, entry_bytes, own_fields
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 
 PARTICLES_TO_GRID = ("x", "v", "C", "tau", "acceleration", "mass", "body")
 """Particle fields read."""

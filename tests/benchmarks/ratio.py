@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from engine.device import backend
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from tests.benchmarks.baseline import (
     ROUND_OFF,
     ROUND_OFF_SVD,

@@ -5,7 +5,7 @@ from typing import Any
 from engine.device import backend
 from engine.device.backend import Real
 from engine.scene.scene import Gravity
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from tests.benchmarks.child import answer
 from tests.benchmarks.contact import in_contact, make_ready
 from tests.benchmarks.memory import allocated, bytes_per_step

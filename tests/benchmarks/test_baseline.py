@@ -3,7 +3,7 @@
 import pytest
 
 from engine.device import backend
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from tests.benchmarks.baseline import (
     ROUND_OFF,
     ROUND_OFF_SVD,

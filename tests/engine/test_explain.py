@@ -11,7 +11,7 @@ from engine.checkpoint import save_checkpoint
 from engine.explain import size
 from engine.jobdir import JobDirectory
 from engine.verification.column import StandingWave
-from tests.engine.moving import started
+from tests.helpers.scenes import started
 
 
 def explain(path: Path, *options: str) -> subprocess.CompletedProcess[str]:

@@ -13,13 +13,13 @@ from engine.laws.tillotson import ColdTillotson
 from engine.parts import allocated_bytes, parts_of
 from engine.run import Options, run_job
 from engine.scene.scene import Scene
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from engine.state.particles import ALWAYS, KINDS, Particles
 from engine.storage import read_dataset
 from engine.verification.column import StandingWave
-from tests.engine.moving import advance, body, scene, started
 from tests.helpers.device import evaluate, worst
 from tests.helpers.oracle import RHO0, K
+from tests.helpers.scenes import advance, body, scene, started
 
 FULL: dict[str, Any] = {"viscosity": {"shear": 1e5}, "walls": [{"point": [0.0, 0.0, -1e6]}]}
 BARE: dict[str, Any] = {"energy": False, "shear": False, "strength": False, "fracture": None, "gravity": None}

@@ -13,7 +13,7 @@ from analysis.particles import snapshots
 from engine import PHYSICS_VERSION
 from engine.jobdir import JobDirectory
 from engine.run import Options, run_job
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from engine.storage import read_dataset, write_dataset
 from tests.engine.jobs import (
     assert_same,

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-import engine.guard
+import engine.simulation.guard
 from engine.__main__ import application
 from engine.device.precision import chosen
 from engine.jobdir import JobDirectory
@@ -26,7 +26,7 @@ from engine.verification.stability.von_neumann import BLOCKS, Block, Limit
 
 CASES = all_cases()
 BY_NAME = {(case.group, case.name): case for case in CASES}
-RECORDED = Path(engine.guard.__file__).parent / "verification" / "stability" / "stability.csv"
+RECORDED = Path(engine.simulation.guard.__file__).parent / "verification" / "stability" / "stability.csv"
 
 FAST = [
     ("speed", "20000 m/s"),
@@ -104,7 +104,7 @@ def test_a_stop_without_a_good_checkpoint_is_a_failure(tmp_path: Path) -> None:
 
 
 def test_growth_that_no_guard_notices_is_a_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(engine.guard, "ENERGY_GROWTH", np.inf)
+    monkeypatch.setattr(engine.simulation.guard, "ENERGY_GROWTH", np.inf)
     case = BY_NAME[TOO_LONG]
     outcome = run_case(replace(case, scene=case.scene.model_copy(update={"end_time": -20.0})), tmp_path)
     assert outcome.verdict == FAILED and outcome.measures.energy_growth > LARGEST_GROWTH

@@ -7,10 +7,10 @@ from typer.testing import CliRunner
 
 from engine.__main__ import application
 from engine.errors import SceneError
-from engine.initial import initial_state
 from engine.scene.bodies import Box
 from engine.scene.fields import validate
 from engine.scene.scene import Numerics, Physics, Scene, Wall
+from engine.simulation.initial_conditions import initial_state
 from engine.verification.bar import Bar, Pull
 from engine.verification.catalogue import FULL, SHORT
 from engine.verification.check import Problem, difference, share

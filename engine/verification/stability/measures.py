@@ -4,12 +4,12 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from engine.bounds import energy_growth, keeps_energy, momentum_drift
-from engine.guard import Guard
-from engine.ledger import Row
+from engine.simulation.bounds import energy_growth, keeps_energy, momentum_drift
+from engine.simulation.conservation import Row
+from engine.simulation.guard import Guard
 
 LARGEST_GROWTH = 0.02
-"""Growth of the total energy up to which a run is stable, in the measure of engine.bounds.energy_growth."""
+"""Growth of the total energy up to which a run is stable, in the measure of engine.simulation.bounds.energy_growth."""
 
 
 @dataclass(frozen=True)

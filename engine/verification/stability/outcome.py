@@ -8,10 +8,10 @@ import numpy as np
 from engine.checkpoint import load_checkpoint, save_checkpoint
 from engine.device import backend
 from engine.errors import GuardFault
-from engine.guard import require_finite
 from engine.jobdir import JobDirectory, Status
-from engine.ledger import as_row
 from engine.run import Options, Run
+from engine.simulation.conservation import as_row
+from engine.simulation.guard import require_finite
 from engine.verification.stability.case import Case
 from engine.verification.stability.measures import Measures, measures
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from engine.bounds import cold_energy
 from engine.constants import BLOCK_EDGE
-from engine.initial import initial_state
 from engine.mpm.blocks import HALF_RANGE
 from engine.scene.scene import Scene
+from engine.simulation.bounds import cold_energy
+from engine.simulation.initial_conditions import initial_state
 from engine.state.particles import Arrays
 from engine.verification.rock import condensed_pressure
 from engine.verification.stability.case import Changes

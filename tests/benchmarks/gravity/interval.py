@@ -9,7 +9,7 @@ from engine.device import backend
 from engine.gravity.net_force import without_net_effect
 from engine.scene.collision import Collision
 from engine.scene.scene import Gravity
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from tests.benchmarks.child import answer
 
 PARTICLES, AFTER_CONTACT = 1000, 6000.0

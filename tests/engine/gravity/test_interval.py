@@ -9,7 +9,7 @@ from engine.constants import G_NEWTON
 from engine.device import backend
 from engine.scene.bodies import Body
 from engine.scene.scene import Gravity, Numerics, Physics, Scene
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from engine.verification.rock import elastic
 from tests.helpers.device import Array
 

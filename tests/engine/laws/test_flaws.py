@@ -3,10 +3,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.initial import all_flaws
 from engine.laws.flaws import Flaws, draw_flaws, join
 from engine.scene.material import PARAMETER_SETS, Fracture, Material
 from engine.scene.scene import Body, Scene
+from engine.simulation.initial_conditions import all_flaws
 
 COVERED, LISTED = PARAMETER_SETS["sugiura2018"].fracture, PARAMETER_SETS["talk"].fracture
 RULES = pytest.mark.parametrize("rule", [COVERED, LISTED], ids=["covered", "2NlnN"])

@@ -6,8 +6,8 @@ import taichi as ti
 
 from engine.device.backend import mat3
 from engine.mpm.transfer import affine_velocity
-from tests.engine.moving import advance, body, scene, started
 from tests.helpers.device import Array, worst
+from tests.helpers.scenes import advance, body, scene, started
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.engine.moving import RUBBLE, advance, body, scene, started
+from tests.helpers.scenes import RUBBLE, advance, body, scene, started
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

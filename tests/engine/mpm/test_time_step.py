@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from engine.simulation import Simulation
-from tests.engine.moving import RUBBLE, body, one_step, scene, started
+from engine.simulation.simulation import Simulation
 from tests.helpers.device import Array
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, squared_sound_speed
+from tests.helpers.scenes import RUBBLE, body, one_step, scene, started
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

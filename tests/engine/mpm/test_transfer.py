@@ -3,12 +3,12 @@ from collections import defaultdict
 import numpy as np
 import pytest
 
-from engine.initial import initial_state
 from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene
-from tests.engine.moving import advance, body, one_step, rubble_collision, scene, spline, started
+from engine.simulation.initial_conditions import initial_state
 from tests.helpers.device import Array, norm, traceless, worst
 from tests.helpers.oracle import RHO0
+from tests.helpers.scenes import advance, body, one_step, rubble_collision, scene, spline, started
 
 pytestmark = pytest.mark.usefixtures("taichi")
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from engine.errors import SceneError
-from engine.initial import initial_state
 from engine.scene.fields import validate
 from engine.scene.scene import Body, Scene, read_scene, scene_in
+from engine.simulation.initial_conditions import initial_state
 
 BODY: dict[str, Any] = {"radius": 50e3, "particles": 1000}
 BOX: dict[str, Any] = {"size": [1.0, 1.0, 1.0], "lattice": [2, 2, 2]}

@@ -8,12 +8,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift, speed_scale
 from engine.device.backend import EPSILON
 from engine.errors import SMALLER_STEPS, stop
-from engine.ledger import Row
 from engine.mpm.transfer import LARGEST_INCREMENT
 from engine.scene.scene import Scene
+from engine.simulation.bounds import (
+    compression_limit,
+    energy_growth,
+    keeps_energy,
+    keeps_momentum,
+    momentum_drift,
+    speed_scale,
+)
+from engine.simulation.conservation import Row
 from engine.state.particles import Arrays, Particles
 
 SPEED_FACTOR = 10.0

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import engine.simulation
+import engine.simulation.simulation
 from engine.device import backend
 from engine.scene.collision import Collision
 from engine.scene.scene import Scene
-from engine.simulation import LAUNCHES, Simulation
+from engine.simulation.simulation import LAUNCHES, Simulation
 
 WHOLE = Collision.model_validate(
     {"velocity": 1000.0, "angle": 15.0, "particles": 60, "start_separation": 1.1, "end_time": 400.0}
@@ -50,7 +50,7 @@ def test_the_reference_collides(reference):
 
 @pytest.mark.parametrize("launches", [1, 7, 1000])
 def test_steps_per_launch_do_not_matter(monkeypatch, reference, launches):
-    monkeypatch.setattr(engine.simulation, "LAUNCHES", launches)
+    monkeypatch.setattr(engine.simulation.simulation, "LAUNCHES", launches)
     assert_same(run(WHOLE, []), reference)
 
 

@@ -9,7 +9,6 @@ from engine.gravity.barnes_hut import Tree
 from engine.gravity.direct_sum import DirectSum
 from engine.gravity.self_gravity import SelfGravity
 from engine.gravity.uniform import UniformGravity, Weightless
-from engine.initial import all_flaws
 from engine.laws.constitution import Constitution
 from engine.laws.damage import Damage, Intact
 from engine.laws.energy import Barotropic, InternalEnergy
@@ -20,6 +19,7 @@ from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
 from engine.mpm.walls import Walls
 from engine.scene.scene import Scene
+from engine.simulation.initial_conditions import all_flaws
 from engine.state.particles import Particles
 
 

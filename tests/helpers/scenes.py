@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from engine.scene.scene import Scene
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from tests.helpers.device import Array
 
 RUBBLE = {"fracture": None, "gravity": None}

@@ -6,18 +6,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine import assembly
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity.self_gravity import SelfGravity
-from engine.initial import initial_state
-from engine.ledger import Totals, elastic_energy, half_step_work, totals
 from engine.mpm.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.mpm.transfer import LARGEST_INCREMENT, Transfer
 from engine.scene.bodies import Solid
 from engine.scene.material import Material
 from engine.scene.scene import Scene
+from engine.simulation import assembly
+from engine.simulation.conservation import Totals, elastic_energy, half_step_work, totals
+from engine.simulation.initial_conditions import initial_state
 from engine.state.clock import FAULT_NONE, Clock
 from engine.state.particles import Arrays, Particles
 

@@ -6,7 +6,7 @@ import pytest
 from engine.device import backend
 from engine.scene.collision import Collision
 from engine.scene.scene import Scene
-from engine.simulation import Simulation
+from engine.simulation.simulation import Simulation
 from engine.state.particles import Arrays
 
 

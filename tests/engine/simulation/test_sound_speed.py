@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from engine.initial import initial_state
 from engine.scene.collision import Collision
 from engine.scene.material import Material
 from engine.scene.scene import Body, Physics, Scene
-from engine.simulation import Simulation
+from engine.simulation.initial_conditions import initial_state
+from engine.simulation.simulation import Simulation
 from engine.verification.column import StandingWave
 from engine.verification.hydrostatic import Hydrostatic
 from tests.helpers.device import evaluate

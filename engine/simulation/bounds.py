@@ -6,9 +6,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from engine.constants import G_NEWTON
-from engine.ledger import Row
 from engine.scene.material import Material
 from engine.scene.scene import Scene
+from engine.simulation.conservation import Row
 
 LARGEST_COMPRESSION = 1e6
 """Bounds of rho/rho0 beyond this are none."""

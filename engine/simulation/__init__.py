@@ -1,0 +1,1 @@
+"""A scene put together from its parts and moved in time."""
