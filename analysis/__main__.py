@@ -11,7 +11,7 @@ from analysis.remnant import latest, measure
 from analysis.tables import printed, reasons, shape_table, unresolved
 from analysis.variables import OUTCOMES
 from engine.errors import JobError, RunFault, SceneError, in_words
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
 
 app = typer.Typer(help=__doc__, add_completion=False, no_args_is_help=True)
 

@@ -12,8 +12,8 @@ from analysis.campaign import NONE, Campaign, Scalar, plain, read_campaign
 from analysis.error_bars import combine
 from analysis.remnant import Outcome, outcome
 from analysis.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
-from engine.jobdir import JobDirectory
-from engine.storage import write_dataset
+from engine.job.directory import JobDirectory
+from engine.job.storage import write_dataset
 
 ALWAYS = ("velocity", "angle", "end_time")
 """Parameters that are coordinates even when every job has the same."""

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from engine.errors import JobError
+from engine.job.storage import read_dataset
 from engine.scene.bodies import Solid
 from engine.scene.scene import Scene
-from engine.storage import read_dataset
 
 NEGLIGIBLE = 1e-6
 """An initial angular momentum below this share of sum m |x| |v| is none: a head-on impact."""

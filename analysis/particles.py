@@ -8,8 +8,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from engine.errors import JobError, RunFault
-from engine.jobdir import JobDirectory
-from engine.storage import is_finite, read_dataset
+from engine.job.directory import JobDirectory
+from engine.job.storage import is_finite, read_dataset
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

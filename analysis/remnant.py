@@ -13,7 +13,7 @@ from analysis.shape import THIN, bulk_density, ellipsoid_of
 from analysis.spin import spin_period
 from analysis.variables import DAMAGED
 from engine.errors import JobError, RunFault
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
 from engine.scene.scene import scene_in
 
 Numbers = dict[str, float]

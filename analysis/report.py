@@ -13,8 +13,8 @@ from jinja2 import Environment, PackageLoader
 from analysis.campaign import Campaign
 from analysis.figures.style import Directories
 from analysis.tables import as_shown, reasons, shape_table, unresolved
-from engine.jobdir import JobDirectory
-from engine.storage import write_text
+from engine.job.directory import JobDirectory
+from engine.job.storage import write_text
 
 CAPTIONS = {
     "remnants": "The largest remnant of every collision, along its shortest axis and edge-on.",

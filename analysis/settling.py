@@ -5,7 +5,7 @@ import numpy as np
 from analysis.clumps import largest_clump
 from analysis.particles import Particles, read_particles, snapshots
 from analysis.shape import Ellipsoid, ellipsoid_of
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
 
 WINDOW = 0.1
 """The shape is followed over this last share of the time since contact."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
-from engine.storage import write_atomically
+from engine.job.storage import write_atomically
 
 HEADINGS = {
     "velocity": "v [m/s]",

@@ -8,8 +8,8 @@ from campaigns.campaign import Campaign, Job
 from campaigns.expansion import scene_of
 from campaigns.keys import flatten
 from engine.errors import SceneError
+from engine.job.storage import write_json, write_text
 from engine.scene.fields import read_table, validate
-from engine.storage import write_json, write_text
 
 _WAY_OUT = "choose another results directory with RUNS=DIR (--runs DIR)"
 

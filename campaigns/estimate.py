@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from datetime import timedelta
 
 from campaigns.state import ALL_STATES
-from engine.jobdir import Status
+from engine.job.directory import Status
 
 
 def time_left(statuses: Sequence[Status]) -> float:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from engine.jobdir import Status
+from engine.job.directory import Status
 
 
 @dataclass(frozen=True)

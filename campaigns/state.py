@@ -7,7 +7,7 @@ from campaigns.alias import belongs_to
 from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
 from engine.errors import JobError
-from engine.jobdir import STATES, JobDirectory, Status
+from engine.job.directory import STATES, JobDirectory, Status
 
 CORRUPT = "corrupt"
 """State of a job whose directory contradicts itself."""

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from engine.device.precision import choose
 from engine.errors import JobBusyError, JobError, RunFault, SceneError, in_words
-from engine.jobdir import JobDirectory, Status
+from engine.job.directory import JobDirectory, Status
 from engine.scene.input_errors import suggestion
 
 application = typer.Typer(
@@ -175,7 +175,7 @@ def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) 
     from engine.scene.scene import scene_in
 
     choose(scene_in(directory).numerics.precision)
-    from engine.run import Options, run_job
+    from engine.job.session import Options, run_job
 
     logging.basicConfig(
         filename=JobDirectory(directory).log, level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s"

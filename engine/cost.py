@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from engine.checkpoint import load_checkpoint
 from engine.device import backend
-from engine.jobdir import JobDirectory
+from engine.job.checkpoint import load_checkpoint
+from engine.job.directory import JobDirectory
 from engine.parts import parts_of
 from engine.scene.scene import Scene, scene_at
 from engine.simulation.simulation import Simulation

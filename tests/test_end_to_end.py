@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.engine.jobs import assert_same_results
+from tests.helpers.jobs import assert_same_results
 
 STUDY = """
 name = "small"

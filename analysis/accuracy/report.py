@@ -12,7 +12,7 @@ from analysis.campaign import read_campaign
 from analysis.collect import collect
 from analysis.figures.style import save
 from engine.errors import SceneError
-from engine.storage import write_dataset, write_text
+from engine.job.storage import write_dataset, write_text
 
 HEADS = {"mass_ratio": "M_lr/M_t", "b_over_a": "b/a", "c_over_a": "c/a", "bulk_density": "density [kg/m3]"}
 DECIMALS = {"mass_ratio": 3, "b_over_a": 3, "c_over_a": 3, "bulk_density": 0}

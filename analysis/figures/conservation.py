@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from analysis.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, shades
 from analysis.ledger import drifts, read_history
 from analysis.tables import cells
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
 from engine.scene.scene import scene_in
 
 LEDGER = {

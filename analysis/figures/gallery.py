@@ -11,7 +11,7 @@ from matplotlib.patches import Rectangle
 from analysis.figures.style import GREY, Directories, nothing_done
 from analysis.figures.views import Frame, Views, frame_around, views_of
 from analysis.tables import series
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
 
 WIDE, NARROW, GAP, CAPTION = 2.5, 1.7, 0.1, 0.46
 """Widths of a panel, space between panels, and space for a caption [inch]."""

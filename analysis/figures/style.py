@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 from matplotlib import pyplot as plt
 
-from engine.storage import write_atomically
+from engine.job.storage import write_atomically
 
 matplotlib.use("Agg")
 

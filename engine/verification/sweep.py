@@ -13,7 +13,7 @@ import xarray as xr
 from engine import PHYSICS_VERSION
 from engine.device import backend
 from engine.device.precision import Precision
-from engine.storage import write_dataset
+from engine.job.storage import write_dataset
 from engine.verification.drive import fitted_order, settings
 from engine.verification.knobs import TRADEOFFS
 from engine.verification.processes import in_own_process

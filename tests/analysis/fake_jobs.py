@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from engine.jobdir import JobDirectory, Status
+from engine.job.directory import JobDirectory, Status
+from engine.job.storage import write_dataset, write_json
 from engine.scene.collision import Collision
 from engine.scene.scene import scene_in
-from engine.storage import write_dataset, write_json
 
 RHO0 = 2700.0
 

@@ -19,8 +19,8 @@ from analysis.variables import OUTCOMES
 from campaigns.expansion import expand
 from campaigns.study import find_study, read_study
 from engine.errors import SceneError
+from engine.job.storage import read_dataset, write_json
 from engine.scene.collision import Collision
-from engine.storage import read_dataset, write_json
 from engine.verification.pareto import pareto
 from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 

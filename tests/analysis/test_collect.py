@@ -11,8 +11,8 @@ import xarray as xr
 from analysis.collect import collect
 from analysis.variables import OUTCOMES, TEXTS
 from engine.errors import SceneError
+from engine.job.storage import read_dataset, write_json
 from engine.scene.collision import Collision
-from engine.storage import read_dataset, write_json
 from tests.analysis.fake_jobs import (
     RHO0,
     history,

@@ -14,8 +14,8 @@ from analysis.figures.angle import shape_versus_angle
 from analysis.plots import plots
 from analysis.tables import printed, shape_table, unresolved
 from analysis.variables import OUTCOMES
+from engine.job.storage import read_dataset
 from engine.scene.collision import Collision
-from engine.storage import read_dataset
 from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 COORDS = {"velocity": [200.0], "angle": [5.0, 15.0], "resolution": ["coarse", "fine"], "seed": [1, 2]}

@@ -7,9 +7,9 @@ import pytest
 
 from analysis.ledger import drifts, read_history
 from engine.errors import JobError
+from engine.job.storage import write_dataset
 from engine.scene.collision import Collision
 from engine.scene.scene import Scene
-from engine.storage import write_dataset
 from tests.analysis.fake_jobs import history
 
 TIMES = np.linspace(-500.0, 1000.0, 4)

@@ -15,9 +15,9 @@ from analysis.figures.angle import shape_versus_angle
 from analysis.figures.surface import picture
 from analysis.plots import plots
 from analysis.tables import printed, reasons, series, shape_table
+from engine.job.storage import write_dataset
 from engine.scene.collision import Collision
 from engine.scene.scene import scene_in
-from engine.storage import write_dataset
 from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 FIGURES = ("shape_vs_angle", "maps", "remnants", "conservation")

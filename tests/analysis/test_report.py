@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from analysis.plots import plots
-from engine.storage import write_json
+from engine.job.storage import write_json
 from tests.analysis.fake_jobs import write_job
 from tests.analysis.test_plots import campaign, collision, grid
 

@@ -8,8 +8,8 @@ import pytest
 from analysis.particles import read_particles
 from analysis.settling import TOLERANCE, is_settled, shape_change
 from engine.errors import JobError
-from engine.jobdir import JobDirectory
-from engine.storage import write_dataset
+from engine.job.directory import JobDirectory
+from engine.job.storage import write_dataset
 from tests.analysis.fake_jobs import lattice_ellipsoid, particles
 
 POINTS, SPACING = lattice_ellipsoid((2e5, 1e5, 8e4), 300)

@@ -12,7 +12,7 @@ from campaigns.display import PlainLines, line, show_once, total
 from campaigns.estimate import count_by_state, duration, percent, time_left
 from campaigns.plan import decide
 from campaigns.state import ALL_STATES, JobState
-from engine.jobdir import Status
+from engine.job.directory import Status
 
 ANY_NUMBER = st.floats(allow_nan=True, allow_infinity=True)
 ANY_STATUS = st.builds(

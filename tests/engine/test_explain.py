@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from engine.checkpoint import save_checkpoint
 from engine.explain import size
-from engine.jobdir import JobDirectory
+from engine.job.checkpoint import save_checkpoint
+from engine.job.directory import JobDirectory
 from engine.verification.column import StandingWave
 from tests.helpers.scenes import started
 

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from taichi.lang.kernel_impl import Func, Kernel
 
-from engine.checkpoint import load_checkpoint, save_checkpoint
 from engine.gravity.self_gravity import SelfGravity
-from engine.jobdir import JobDirectory
+from engine.job.checkpoint import load_checkpoint, save_checkpoint
+from engine.job.directory import JobDirectory
+from engine.job.session import Options, run_job
+from engine.job.storage import read_dataset
 from engine.laws.tillotson import ColdTillotson
 from engine.parts import allocated_bytes, parts_of
-from engine.run import Options, run_job
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
 from engine.state.particles import ALWAYS, KINDS, Particles
-from engine.storage import read_dataset
 from engine.verification.column import StandingWave
 from tests.helpers.device import evaluate, worst
 from tests.helpers.oracle import RHO0, K

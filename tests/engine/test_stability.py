@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 import engine.simulation.guard
 from engine.__main__ import application
 from engine.device.precision import chosen
-from engine.jobdir import JobDirectory
-from engine.storage import read_dataset
+from engine.job.directory import JobDirectory
+from engine.job.storage import read_dataset
 from engine.verification.processes import in_own_process
 from engine.verification.stability import matrix
 from engine.verification.stability.case import Case, alone, uniform

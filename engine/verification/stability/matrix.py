@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from engine.device import backend
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
 from engine.verification.processes import in_own_process
 from engine.verification.stability.cases import all_cases
 from engine.verification.stability.outcome import Outcome, failure, run_case

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.checkpoint import load_checkpoint, save_checkpoint
 from engine.device import backend
 from engine.errors import GuardFault
-from engine.jobdir import JobDirectory, Status
-from engine.run import Options, Run
+from engine.job.checkpoint import load_checkpoint, save_checkpoint
+from engine.job.directory import JobDirectory, Status
+from engine.job.session import Options, Run
 from engine.simulation.conservation import as_row
 from engine.simulation.guard import require_finite
 from engine.verification.stability.case import Case

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from engine import PHYSICS_VERSION
-from engine.storage import write_dataset
+from engine.job.storage import write_dataset
 from engine.verification.stability.heat_map import draw
 from engine.verification.stability.measures import as_numbers
 from engine.verification.stability.outcome import FAILED, STABLE, STOPPED, Outcome

@@ -10,7 +10,7 @@ import xarray as xr
 from engine.gravity.barnes_hut import Tree
 from engine.gravity.direct_sum import DirectSum
 from engine.gravity.self_gravity import SelfGravity
-from engine.run import Options, run_job
+from engine.job.session import Options, run_job
 from engine.scene.collision import Collision
 from engine.scene.scene import Gravity
 from tests.benchmarks.child import answer

@@ -9,11 +9,11 @@ from engine.device.backend import PRECISION, mat3
 from engine.errors import GuardFault
 from engine.gravity.barnes_hut import Tree
 from engine.gravity.direct_sum import DirectSum
+from engine.job.snapshot import FIELDS, snapshot
 from engine.mpm.transfer import affine_velocity
 from engine.scene.placement import sphere_points
 from engine.simulation.conservation import as_row
 from engine.simulation.guard import Guard
-from engine.snapshot import FIELDS, snapshot
 from engine.state.particles import Particles
 from tests.helpers.device import Array
 from tests.helpers.scenes import RUBBLE, advance, body, rubble_collision, scene, started

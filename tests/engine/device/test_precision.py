@@ -15,8 +15,8 @@ from engine.__main__ import BAD_INPUT, application
 from engine.device.backend import require_precision
 from engine.device.precision import VARIABLE, chosen
 from engine.errors import SceneError
-from engine.storage import read_dataset
-from tests.engine.jobs import assert_same_results, run_engine, start_and_stop, write_job
+from engine.job.storage import read_dataset
+from tests.helpers.jobs import assert_same_results, run_engine, start_and_stop, write_job
 
 SINGLE = {"numerics": {"precision": "f32"}}
 

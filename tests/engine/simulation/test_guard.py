@@ -11,10 +11,10 @@ from scipy.integrate import quad
 
 from campaigns.display import line
 from campaigns.state import JobState, status_of
-from engine.checkpoint import save_checkpoint
 from engine.errors import Fault, GuardFault, stop
-from engine.jobdir import JobDirectory, Status
-from engine.run import Options, Run
+from engine.job.checkpoint import save_checkpoint
+from engine.job.directory import JobDirectory, Status
+from engine.job.session import Options, Run
 from engine.scene.collision import Collision
 from engine.scene.material import Material, Tillotson
 from engine.scene.scene import Physics, Scene, Wall
@@ -23,7 +23,7 @@ from engine.simulation.conservation import Row, as_row, totals
 from engine.simulation.guard import ENERGY_GROWTH, LARGEST_DRIFT, SPEED_FACTOR, STEPS_FACTOR, Guard
 from engine.simulation.simulation import Simulation
 from engine.state.particles import Arrays, Particles
-from tests.engine.jobs import write_job
+from tests.helpers.jobs import write_job
 from tests.helpers.scenes import body, scene
 
 COUNT = 20

@@ -11,11 +11,11 @@ import pytest
 
 from analysis.particles import snapshots
 from engine import PHYSICS_VERSION
-from engine.jobdir import JobDirectory
-from engine.run import Options, run_job
+from engine.job.directory import JobDirectory
+from engine.job.session import Options, run_job
+from engine.job.storage import read_dataset, write_dataset
 from engine.simulation.simulation import Simulation
-from engine.storage import read_dataset, write_dataset
-from tests.engine.jobs import (
+from tests.helpers.jobs import (
     assert_same,
     assert_same_results,
     engine_command,

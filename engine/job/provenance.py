@@ -13,9 +13,9 @@ from typing import Any
 
 from engine import PHYSICS_VERSION
 from engine.device.backend import Real
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
+from engine.job.storage import write_json
 from engine.scene.scene import Scene
-from engine.storage import write_json
 
 PACKAGES = ("asteroid-collisions", "taichi", "numpy", "scipy", "xarray", "netCDF4", "pydantic")
 

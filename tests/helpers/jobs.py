@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
+from engine.job.storage import read_dataset
 from engine.scene.collision import Collision
-from engine.storage import read_dataset
 
 
 def write_job(directory: Path, **changes: Any) -> Path:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from engine.history import SPACE
+from engine.job.history import SPACE
 from engine.state.particles import Arrays
 
 ATTRIBUTES = {

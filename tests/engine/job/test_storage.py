@@ -12,7 +12,14 @@ import pytest
 import xarray as xr
 
 from engine.errors import JobError
-from engine.storage import is_finite, read_dataset, remove_partial_files, write_atomically, write_dataset, write_json
+from engine.job.storage import (
+    is_finite,
+    read_dataset,
+    remove_partial_files,
+    write_atomically,
+    write_dataset,
+    write_json,
+)
 
 
 def dataset(count: int = 50) -> xr.Dataset:

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from engine.errors import JobBusyError, JobError
-from engine.jobdir import HEARTBEAT_LIMIT, JobDirectory, Status
+from engine.job.directory import HEARTBEAT_LIMIT, JobDirectory, Status
 
 SPAWN = multiprocessing.get_context("spawn")
 

@@ -7,11 +7,11 @@ import xarray as xr
 
 from engine import PHYSICS_VERSION
 from engine.errors import JobError
-from engine.jobdir import JobDirectory
+from engine.job.directory import JobDirectory
+from engine.job.storage import is_finite, read_dataset, write_dataset
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
 from engine.state.particles import Particles
-from engine.storage import is_finite, read_dataset, write_dataset
 
 CLOCK = {"time": float, "dt": float, "rate": float, "step": int, "moved_out": int}
 """Fields of the clock that outlive a pause."""

@@ -14,18 +14,18 @@ import numpy as np
 from xarray import Dataset
 
 from engine import PHYSICS_VERSION
-from engine.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
 from engine.device import backend
 from engine.errors import Fault, GuardFault, JobError, SceneError
-from engine.history import History
-from engine.jobdir import HEARTBEAT_PERIOD, JobDirectory, Status
-from engine.provenance import record_session
+from engine.job.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
+from engine.job.directory import HEARTBEAT_PERIOD, JobDirectory, Status
+from engine.job.history import History
+from engine.job.provenance import record_session
+from engine.job.snapshot import FIELDS, snapshot
+from engine.job.storage import read_dataset, write_dataset
 from engine.scene.scene import Scene, scene_in
 from engine.simulation.conservation import Row, as_row
 from engine.simulation.guard import Guard
 from engine.simulation.simulation import Simulation
-from engine.snapshot import FIELDS, snapshot
-from engine.storage import read_dataset, write_dataset
 
 log = logging.getLogger("engine")
 

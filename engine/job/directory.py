@@ -13,7 +13,7 @@ import psutil
 from pydantic import TypeAdapter, ValidationError
 
 from engine.errors import Fault, JobBusyError, JobError
-from engine.storage import remove_partial_files, write_json
+from engine.job.storage import remove_partial_files, write_json
 
 STATES = ("pending", "running", "interrupted", "done", "failed")
 HEARTBEAT_PERIOD = 2.0
