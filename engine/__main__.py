@@ -75,8 +75,8 @@ def explain(
 
     try:
         choose(scene_at(scene).numerics.precision)
-        from engine.cost import measure
-        from engine.explain import report
+        from engine.profile.cost import measure
+        from engine.profile.report import report
 
         with Console(stderr=True).status(f"measuring {steps} steps"):
             result = measure(scene, steps, arch.value, threads)

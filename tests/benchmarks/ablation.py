@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from engine.device import backend
-from engine.parts import allocated_bytes, parts_of
+from engine.profile.parts import allocated_bytes, parts_of
 from engine.scene.scene import Gravity, Scene, Viscosity, Wall
 from engine.simulation.simulation import Simulation
 from tests.benchmarks.contact import in_contact, take_step

@@ -1,7 +1,7 @@
 """Memory of a simulation: what its particles and grid occupy, and what a step moves at least."""
 
 from engine.mpm.transfer import COPY
-from engine.parts import allocated_bytes, entry_bytes, own_fields
+from engine.profile.parts import allocated_bytes, entry_bytes, own_fields
 from engine.simulation.simulation import Simulation
 
 PARTICLES_TO_GRID = ("x", "v", "C", "tau", "acceleration", "mass", "body")

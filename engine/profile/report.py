@@ -6,8 +6,8 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from engine.cost import Cost, Measurement
-from engine.parts import Part, allocated_bytes, parts_of
+from engine.profile.cost import Cost, Measurement
+from engine.profile.parts import Part, allocated_bytes, parts_of
 
 
 def report(result: Measurement) -> RenderableType:

@@ -12,7 +12,7 @@ from engine.job.directory import JobDirectory
 from engine.job.session import Options, run_job
 from engine.job.storage import read_dataset
 from engine.laws.tillotson import ColdTillotson
-from engine.parts import allocated_bytes, parts_of
+from engine.profile.parts import allocated_bytes, parts_of
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
 from engine.state.particles import ALWAYS, KINDS, Particles

@@ -10,7 +10,7 @@ from typing import Any
 from engine.device import backend
 from engine.job.checkpoint import load_checkpoint
 from engine.job.directory import JobDirectory
-from engine.parts import parts_of
+from engine.profile.parts import parts_of
 from engine.scene.scene import Scene, scene_at
 from engine.simulation.simulation import Simulation
 

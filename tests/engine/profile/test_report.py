@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from engine.explain import size
 from engine.job.checkpoint import save_checkpoint
 from engine.job.directory import JobDirectory
+from engine.profile.report import size
 from engine.verification.column import StandingWave
 from tests.helpers.scenes import started
 

@@ -1,0 +1,1 @@
+"""What a scene costs: its parts, their memory and their time."""
