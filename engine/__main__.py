@@ -130,9 +130,9 @@ def accuracy(
 ) -> None:
     """Turn every knob of the verification scenes; measure error and CPU time. What DIRECTORY holds is not repeated."""
     choose("f64")
-    from engine.verification.knobs import TRADEOFFS
-    from engine.verification.sweep import orders, read, sweep
-    from engine.verification.work_precision import draw
+    from engine.verification.accuracy.figure import draw
+    from engine.verification.accuracy.settings import TRADEOFFS
+    from engine.verification.accuracy.sweep import orders, read, sweep
 
     for name in set(names or ()) - set(TRADEOFFS):
         _exit(f"unknown scene '{name}'{suggestion(name, list(TRADEOFFS), 'scenes')}", BAD_INPUT)

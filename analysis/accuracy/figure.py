@@ -14,8 +14,8 @@ from analysis.accuracy.measure import MEASURED
 from analysis.campaign import NONE
 from analysis.figures.style import GREY, MARKERS
 from analysis.variables import OUTCOMES
-from engine.verification.log_axes import label_decades
-from engine.verification.pareto import pareto
+from engine.verification.accuracy.log_axes import label_decades
+from engine.verification.accuracy.pareto import pareto
 
 HIDDEN = 0.05
 """Relative difference of errors below which two cases lie on top of each other."""

@@ -1,19 +1,19 @@
 """All verification problems, in a version of seconds and, where it differs, one of minutes."""
 
-from engine.verification.bar import Bar
 from engine.verification.check import Problem
-from engine.verification.cliff import Cliff
-from engine.verification.collapse import Collapse
-from engine.verification.column import Column
-from engine.verification.expansion import Expansion
-from engine.verification.hugoniot import Hugoniot
-from engine.verification.hydrostatic import Hydrostatic
-from engine.verification.orbit import Infall
-from engine.verification.rotation import Rotation
-from engine.verification.rubble import Rubble
-from engine.verification.runout import Runout
-from engine.verification.slope import Slope
-from engine.verification.stiffness import Stiffness
+from engine.verification.problems.bar import Bar
+from engine.verification.problems.cliff import Cliff
+from engine.verification.problems.collapse import Collapse
+from engine.verification.problems.column import Column
+from engine.verification.problems.expansion import Expansion
+from engine.verification.problems.hugoniot import Hugoniot
+from engine.verification.problems.hydrostatic import Hydrostatic
+from engine.verification.problems.infall import Infall
+from engine.verification.problems.rotation import Rotation
+from engine.verification.problems.rubble import Rubble
+from engine.verification.problems.runout import Runout
+from engine.verification.problems.slope import Slope
+from engine.verification.problems.stiffness import Stiffness
 
 SHORT: dict[str, Problem] = {
     problem.name: problem

@@ -10,9 +10,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from engine.verification.bar import CONTINUUM_PEAK, Bar, Pull
 from engine.verification.check import Problem
-from engine.verification.cliff import Cliff, experiment, jutzi
+from engine.verification.problems.bar import CONTINUUM_PEAK, Bar, Pull
+from engine.verification.problems.cliff import Cliff, experiment, jutzi
 
 SIZES = (25, 50, 100, 200, 400, 800, 1600)
 """Particles in the bars that show how strength depends on resolution."""

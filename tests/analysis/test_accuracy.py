@@ -21,7 +21,7 @@ from campaigns.study import find_study, read_study
 from engine.errors import SceneError
 from engine.job.storage import read_dataset, write_json
 from engine.scene.collision import Collision
-from engine.verification.pareto import pareto
+from engine.verification.accuracy.pareto import pareto
 from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 COUNTS = {"particles500": 500, "base": 1000, "particles4000": 4000, "particles32000": 32000}

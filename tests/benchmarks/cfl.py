@@ -12,7 +12,7 @@ from engine.scene.collision import Collision
 from engine.scene.scene import Scene
 from engine.simulation.conservation import Totals
 from engine.simulation.simulation import Simulation
-from engine.verification.drive import altered
+from engine.verification.harness import altered
 
 PARTICLES = 1_000
 COURANT = (0.1, 0.15, 0.25, 0.35, 0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5)

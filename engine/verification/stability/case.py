@@ -12,7 +12,7 @@ from engine.scene.collision import Collision
 from engine.scene.material import Material
 from engine.scene.scene import Physics, Scene
 from engine.state.particles import Arrays
-from engine.verification.drive import altered
+from engine.verification.harness import altered
 
 Changes = Callable[[Scene], dict[str, NDArray[Any]]]
 

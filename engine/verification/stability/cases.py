@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from engine.scene.bodies import Body
 from engine.scene.scene import Gravity, Physics, Scene, Viscosity
-from engine.verification.drive import altered
-from engine.verification.rock import elastic
+from engine.verification.harness import altered
+from engine.verification.problems.materials import elastic
 from engine.verification.stability import states
 from engine.verification.stability.case import (
     Case,

@@ -8,7 +8,7 @@ from engine.scene.scene import Scene
 from engine.simulation.bounds import cold_energy
 from engine.simulation.initial_conditions import initial_state
 from engine.state.particles import Arrays
-from engine.verification.rock import condensed_pressure
+from engine.verification.problems.materials import condensed_pressure
 from engine.verification.stability.case import Changes
 
 

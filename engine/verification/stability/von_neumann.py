@@ -20,7 +20,7 @@ from engine.errors import GuardFault
 from engine.scene.bodies import Box
 from engine.scene.material import Material
 from engine.scene.scene import Numerics, Physics, Scene
-from engine.verification.drive import altered, begin
+from engine.verification.harness import altered, begin
 
 Array = NDArray[np.float64]
 

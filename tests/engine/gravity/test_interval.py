@@ -10,7 +10,7 @@ from engine.device import backend
 from engine.scene.bodies import Body
 from engine.scene.scene import Gravity, Numerics, Physics, Scene
 from engine.simulation.simulation import Simulation
-from engine.verification.rock import elastic
+from engine.verification.problems.materials import elastic
 from tests.helpers.device import Array
 
 AXIS, ECCENTRICITY, TURNS = 1e6, 0.2, 20

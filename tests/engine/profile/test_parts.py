@@ -16,7 +16,7 @@ from engine.profile.parts import allocated_bytes, parts_of
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
 from engine.state.particles import ALWAYS, KINDS, Particles
-from engine.verification.column import StandingWave
+from engine.verification.problems.column import StandingWave
 from tests.helpers.device import evaluate, worst
 from tests.helpers.oracle import RHO0, K
 from tests.helpers.scenes import advance, body, scene, started

@@ -10,7 +10,7 @@ import pytest
 from engine.job.checkpoint import save_checkpoint
 from engine.job.directory import JobDirectory
 from engine.profile.report import size
-from engine.verification.column import StandingWave
+from engine.verification.problems.column import StandingWave
 from tests.helpers.scenes import started
 
 

@@ -8,8 +8,8 @@ from engine.scene.material import Material
 from engine.scene.scene import Body, Physics, Scene
 from engine.simulation.initial_conditions import initial_state
 from engine.simulation.simulation import Simulation
-from engine.verification.column import StandingWave
-from engine.verification.hydrostatic import Hydrostatic
+from engine.verification.problems.column import StandingWave
+from engine.verification.problems.hydrostatic import Hydrostatic
 from tests.helpers.device import evaluate
 from tests.helpers.oracle import LONGITUDINAL, RHO0
 

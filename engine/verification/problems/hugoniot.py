@@ -11,8 +11,8 @@ from engine.scene.material import Material
 from engine.scene.scene import Numerics, Physics, Scene, Viscosity
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, share
-from engine.verification.drive import Array, Moment, begin, follow
-from engine.verification.rock import condensed_pressure
+from engine.verification.harness import Array, Moment, begin, follow
+from engine.verification.problems.materials import condensed_pressure
 
 BASALT = Material()
 

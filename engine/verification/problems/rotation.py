@@ -8,7 +8,7 @@ from engine.scene.bodies import Body
 from engine.scene.scene import Physics, Scene
 from engine.simulation.conservation import Totals
 from engine.verification.check import Check, share
-from engine.verification.drive import begin, follow
+from engine.verification.harness import begin, follow
 
 
 @dataclass(frozen=True)

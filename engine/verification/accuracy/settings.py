@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 
 from engine.scene.material import Material
-from engine.verification.bar import Pull
-from engine.verification.cliff import Cliff
-from engine.verification.collapse import Fall
-from engine.verification.column import StandingWave
-from engine.verification.expansion import Expansion
-from engine.verification.hugoniot import Impact, Shock
-from engine.verification.hydrostatic import Hydrostatic
-from engine.verification.orbit import Infall
-from engine.verification.rotation import Rotation
-from engine.verification.rubble import Rubble
-from engine.verification.slope import Layer
+from engine.verification.problems.bar import Pull
+from engine.verification.problems.cliff import Cliff
+from engine.verification.problems.collapse import Fall
+from engine.verification.problems.column import StandingWave
+from engine.verification.problems.expansion import Expansion
+from engine.verification.problems.hugoniot import Impact, Shock
+from engine.verification.problems.hydrostatic import Hydrostatic
+from engine.verification.problems.infall import Infall
+from engine.verification.problems.rotation import Rotation
+from engine.verification.problems.rubble import Rubble
+from engine.verification.problems.slope import Layer
 
 FINE_STEPS = 16000
 """Time steps of the independent integration that bars are compared with."""

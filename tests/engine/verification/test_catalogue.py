@@ -11,19 +11,19 @@ from engine.scene.bodies import Box
 from engine.scene.fields import validate
 from engine.scene.scene import Numerics, Physics, Scene, Wall
 from engine.simulation.initial_conditions import initial_state
-from engine.verification.bar import Bar, Pull
 from engine.verification.catalogue import FULL, SHORT
 from engine.verification.check import Problem, difference, share
-from engine.verification.cliff import Cliff
-from engine.verification.collapse import Fall
-from engine.verification.column import Column
-from engine.verification.drive import Moment, begin, fitted_order, follow
-from engine.verification.expansion import Expansion
-from engine.verification.hugoniot import Hugoniot, Shock
-from engine.verification.hydrostatic import Hydrostatic
-from engine.verification.rotation import Rotation
-from engine.verification.rubble import Rubble
-from engine.verification.stiffness import apart
+from engine.verification.harness import Moment, begin, fitted_order, follow
+from engine.verification.problems.bar import Bar, Pull
+from engine.verification.problems.cliff import Cliff
+from engine.verification.problems.collapse import Fall
+from engine.verification.problems.column import Column
+from engine.verification.problems.expansion import Expansion
+from engine.verification.problems.hugoniot import Hugoniot, Shock
+from engine.verification.problems.hydrostatic import Hydrostatic
+from engine.verification.problems.rotation import Rotation
+from engine.verification.problems.rubble import Rubble
+from engine.verification.problems.stiffness import apart
 
 HUGONIOT = {  # up: Us [m/s], P [GPa], rho/rho0 of Tillotson's basalt, strengthless
     25.0: (3182.2, 0.2148, 1.00792),

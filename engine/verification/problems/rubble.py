@@ -7,7 +7,7 @@ import numpy as np
 from engine.scene.collision import Collision
 from engine.scene.scene import Physics, Scene
 from engine.verification.check import Check
-from engine.verification.drive import begin, follow
+from engine.verification.harness import begin, follow
 
 
 @dataclass(frozen=True)

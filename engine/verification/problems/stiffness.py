@@ -6,8 +6,8 @@ from math import inf
 import numpy as np
 
 from engine.verification.check import Check, difference
-from engine.verification.cliff import THIN, Cliff
-from engine.verification.drive import Array, Moment, settings
+from engine.verification.harness import Array, Moment, settings
+from engine.verification.problems.cliff import THIN, Cliff
 
 SCATTER = 0.05
 """RMS of H [L0] between cliffs at rest, 10 cells, whose particles are displaced by 0.1 dx at random: 0.034 to 0.048."""

@@ -8,7 +8,7 @@ from engine.constants import G_NEWTON
 from engine.scene.bodies import Body
 from engine.scene.scene import Physics, Scene
 from engine.verification.check import Check, difference
-from engine.verification.drive import Array, begin, follow
+from engine.verification.harness import Array, begin, follow
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from engine.laws.flaws import Flaws, draw_flaws
 from engine.scene.bodies import Body
 from engine.scene.material import Fracture, Material
 from engine.verification.check import Check, share
-from engine.verification.drive import Array, timed
-from engine.verification.specimen import Specimen
+from engine.verification.harness import Array, timed
+from engine.verification.problems.specimen import Specimen
 
 CONTINUUM_PEAK = 9.07e6
 """Peak stress [Pa] at 1 1/s of the continuum law, which grows with rate^(1/4): a guide, for flaws without end."""

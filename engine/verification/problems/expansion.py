@@ -8,7 +8,7 @@ from engine.scene.bodies import Body
 from engine.scene.scene import Physics, Scene
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, difference
-from engine.verification.drive import Moment, begin, follow
+from engine.verification.harness import Moment, begin, follow
 
 
 @dataclass(frozen=True)

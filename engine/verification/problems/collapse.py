@@ -9,8 +9,8 @@ from engine.constants import G_NEWTON
 from engine.scene.bodies import Body
 from engine.scene.scene import Gravity, Numerics, Physics, Scene
 from engine.verification.check import Check, share
-from engine.verification.drive import begin, fitted_order, follow
-from engine.verification.rock import elastic
+from engine.verification.harness import begin, fitted_order, follow
+from engine.verification.problems.materials import elastic
 
 SOFT = 1.0
 """Bulk modulus [Pa]: a millionth of the pressure that would hold the sphere."""

@@ -10,9 +10,9 @@ import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.axes import Axes
 
-from engine.verification.knobs import TRADEOFFS
-from engine.verification.log_axes import label_decades
-from engine.verification.pareto import pareto
+from engine.verification.accuracy.log_axes import label_decades
+from engine.verification.accuracy.pareto import pareto
+from engine.verification.accuracy.settings import TRADEOFFS
 
 COLUMNS = 4
 

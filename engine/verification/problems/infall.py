@@ -8,7 +8,7 @@ from engine.constants import G_NEWTON
 from engine.scene.collision import Collision
 from engine.scene.scene import Numerics
 from engine.verification.check import Check, difference
-from engine.verification.drive import Array, Moment, begin, follow
+from engine.verification.harness import Array, Moment, begin, follow
 
 NEAR = 1.25
 """Distance at the end of the fall, in contact distances: no nodes are shared yet."""

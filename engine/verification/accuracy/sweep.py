@@ -14,8 +14,8 @@ from engine import PHYSICS_VERSION
 from engine.device import backend
 from engine.device.precision import Precision
 from engine.job.storage import write_dataset
-from engine.verification.drive import fitted_order, settings
-from engine.verification.knobs import TRADEOFFS
+from engine.verification.accuracy.settings import TRADEOFFS
+from engine.verification.harness import fitted_order, settings
 from engine.verification.processes import in_own_process
 
 KEYS = ["scene", "knob", "value"]

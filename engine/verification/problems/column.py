@@ -12,7 +12,7 @@ from engine.scene.material import Material
 from engine.scene.scene import Numerics, Physics, Scene
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, difference, share
-from engine.verification.drive import Array, begin, fitted_order, follow
+from engine.verification.harness import Array, begin, fitted_order, follow
 
 
 @dataclass(frozen=True)

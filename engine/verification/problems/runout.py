@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import inf
 
 from engine.verification.check import Check, difference
-from engine.verification.cliff import Cliff
-from engine.verification.drive import begin, follow
+from engine.verification.harness import begin, follow
+from engine.verification.problems.cliff import Cliff
 
 EXPERIMENTS: dict[str, Callable[[float], float]] = {
     "Lajeunesse 2005": lambda a: 1.8 * a if a < 3.0 else 2.3 * a ** (2.0 / 3.0),

@@ -9,8 +9,8 @@ import numpy as np
 from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene, Wall
 from engine.verification.check import Check, difference
-from engine.verification.drive import Array, Moment, begin, follow
-from engine.verification.rock import elastic
+from engine.verification.harness import Array, Moment, begin, follow
+from engine.verification.problems.materials import elastic
 
 DATA = Path(__file__).parent / "data"
 GRAVITY, DENSITY, WIDTH = 9.81, 2000.0, 1.0

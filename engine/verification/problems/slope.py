@@ -9,8 +9,8 @@ from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene, Wall
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, difference, share
-from engine.verification.drive import Array, begin, follow
-from engine.verification.rock import elastic
+from engine.verification.harness import Array, begin, follow
+from engine.verification.problems.materials import elastic
 
 GRAVITY = 9.81
 DEPTH = 1.0

@@ -1,0 +1,1 @@
+"""Error against computing time of verification scenes, every setting varied."""
