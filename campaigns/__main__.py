@@ -1,5 +1,5 @@
 """`python -m campaigns`."""
 
-from campaigns.app import main
+from campaigns.cli import main
 
 main()

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from campaigns.alias import HASH_LENGTH
 from campaigns.campaign import Campaign, Job
+from campaigns.dotted_keys import flatten
 from campaigns.expansion import scene_of
-from campaigns.keys import flatten
+from campaigns.job_names import HASH_LENGTH
 from engine.errors import SceneError
 from engine.job.storage import write_json, write_text
 from engine.scene.fields import read_table, validate

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Sequence
 from datetime import timedelta
 
-from campaigns.state import ALL_STATES
+from campaigns.job_state import ALL_STATES
 from engine.job.directory import Status
 
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from campaigns.alias import alias, job_id
 from campaigns.campaign import Campaign, Job
-from campaigns.keys import flatten, ordered, scalar_keys, value_at
+from campaigns.dotted_keys import flatten, ordered, scalar_keys, value_at
+from campaigns.job_names import alias, job_id
 from campaigns.study import Study
 from engine import PHYSICS_VERSION
 from engine.errors import SceneError

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field
 
-from campaigns.keys import flatten, nest
+from campaigns.dotted_keys import flatten, nest
 from campaigns.members import ErrorBars
 from engine.errors import SceneError
 from engine.scene.collision import Collision

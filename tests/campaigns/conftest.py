@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-import campaigns.app
-import campaigns.job
-import campaigns.run
-from tests.campaigns.sound import SOUND
+import campaigns.cli
+import campaigns.runner
+import campaigns.worker
+from tests.helpers.undamaged_results import SOUND
 
 STUDY = """
 name = "{name}"
@@ -66,7 +66,7 @@ def collected(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
         directories.append(directory)
         return SOUND
 
-    monkeypatch.setattr(campaigns.app, "collect_results", nothing_unsound)
+    monkeypatch.setattr(campaigns.cli, "collect_results", nothing_unsound)
     return directories
 
 
@@ -75,14 +75,14 @@ def command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], runs: Path, collected: list[Path]
 ) -> Iterator[Command]:
     """Run `python -m campaigns` in this process with the fake engine."""
-    monkeypatch.setattr(campaigns.job, "ENGINE", (sys.executable, str(Path(__file__).with_name("fake_engine.py"))))
-    monkeypatch.setattr(campaigns.run, "PERIOD", 0.05)
+    monkeypatch.setattr(campaigns.worker, "ENGINE", (sys.executable, str(Path(__file__).with_name("fake_engine.py"))))
+    monkeypatch.setattr(campaigns.runner, "PERIOD", 0.05)
     handler = signal.getsignal(signal.SIGTERM)
 
     def call(*arguments: object) -> Result:
         monkeypatch.setattr(sys, "argv", ["campaigns", *map(str, arguments), "--runs", str(runs)])
         with pytest.raises(SystemExit) as ending:
-            campaigns.app.main()
+            campaigns.cli.main()
         printed = capsys.readouterr()
         code = ending.value.code
         return Result(code if isinstance(code, int) else 0, printed.out, printed.err)

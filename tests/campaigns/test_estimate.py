@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console
 
-from campaigns.display import PlainLines, line, show_once, total
 from campaigns.estimate import count_by_state, duration, percent, time_left
+from campaigns.job_state import ALL_STATES, JobState
 from campaigns.plan import decide
-from campaigns.state import ALL_STATES, JobState
+from campaigns.progress import PlainLines, line, show_once, total
 from engine.job.directory import Status
 
 ANY_NUMBER = st.floats(allow_nan=True, allow_infinity=True)

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from campaigns.campaign import Campaign
+from campaigns.dotted_keys import flatten, nest, scalar_keys, value_at
 from campaigns.expansion import expand
-from campaigns.keys import flatten, nest, scalar_keys, value_at
 from campaigns.study import SHIPPED, Study, find_study, read_study
 from engine.scene.collision import Collision
 from engine.scene.fields import validate

@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from campaigns.state import status_of
+from campaigns.job_state import status_of
 
 ROOT = Path(__file__).parents[2]
 DRIVER = Path(__file__).with_name("driver.py")

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from campaigns.display import line
-from campaigns.state import JobState, status_of
+from campaigns.job_state import JobState, status_of
+from campaigns.progress import line
 from engine.errors import Fault, GuardFault, stop
 from engine.job.checkpoint import save_checkpoint
 from engine.job.directory import JobDirectory, Status

@@ -4,7 +4,7 @@ import signal
 from pathlib import Path
 from typing import Any
 
-from campaigns.run import Run
+from campaigns.runner import Run
 
 
 class LateCluster:

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from campaigns.estimate import count_by_state, duration, percent, time_left
-from campaigns.state import CORRUPT, JobState
+from campaigns.job_state import CORRUPT, JobState
 
 Show = Callable[[Sequence[JobState]], None]
 """Shows how all jobs stand now."""

@@ -1,4 +1,4 @@
-"""`python -m campaigns.tether PARENT COMMAND...`: become COMMAND, stopped when PARENT ends, be it by kill -9.
+"""`python -m campaigns.parent_death PARENT COMMAND...`: become COMMAND, stopped when PARENT ends, be it by kill -9.
 
 Only Linux offers this; elsewhere the command outlives its parent, and the next run finds it still running.
 The kernel watches the thread that started this process, so that thread must wait for it.
@@ -15,7 +15,7 @@ PR_SET_PDEATHSIG = 1
 
 def tethered(command: list[str]) -> list[str]:
     """The command, tied to the life of this process."""
-    return [sys.executable, "-m", "campaigns.tether", str(os.getpid()), *command]
+    return [sys.executable, "-m", "campaigns.parent_death", str(os.getpid()), *command]
 
 
 def become(parent: int, command: list[str]) -> None:

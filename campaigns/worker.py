@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from campaigns.job_state import status_of
+from campaigns.parent_death import tethered
 from campaigns.plan import decide
-from campaigns.state import status_of
-from campaigns.tether import tethered
 
 ENGINE = (sys.executable, "-m", "engine")
 """Command that runs one job directory."""

@@ -10,10 +10,10 @@ from dask.distributed import Client, Future
 
 from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
-from campaigns.display import Show
-from campaigns.job import CLAIMED, Outcome, run_job, signal_jobs
+from campaigns.job_state import JobState, states
 from campaigns.plan import decide
-from campaigns.state import JobState, states
+from campaigns.progress import Show
+from campaigns.worker import CLAIMED, Outcome, run_job, signal_jobs
 
 PERIOD = 1.0
 """Time [s] between two looks at the disk."""

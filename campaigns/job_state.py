@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from campaigns.alias import belongs_to
 from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
+from campaigns.job_names import belongs_to
 from engine.errors import JobError
 from engine.job.directory import STATES, JobDirectory, Status
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from campaigns.alias import LONGEST, alias, belongs_to, job_id
+from campaigns.job_names import LONGEST, alias, belongs_to, job_id
 from engine.scene.collision import Collision
 
 SAFE = re.compile(r"[A-Za-z0-9._-]+")

@@ -79,7 +79,7 @@ def test_a_setting_that_becomes_an_axis_keeps_finished_jobs(command, write_study
 def test_a_job_that_says_done_and_is_damaged_is_told(command, write_study, monkeypatch):
     told = {"job": ["one", "two"], "state": ["done", "corrupt"], "reason": ["", "final.nc is cut"]}
     damaged = xr.Dataset({name: ("case", texts) for name, texts in told.items()}, {"case": ["a", "b"]})
-    monkeypatch.setattr("campaigns.app.collect_results", lambda directory: damaged)
+    monkeypatch.setattr("campaigns.cli.collect_results", lambda directory: damaged)
     result = command("run", write_study())
     assert result.code == 1
     assert "two: corrupt: final.nc is cut" in result.out and "one:" not in result.out

@@ -15,12 +15,12 @@ from analysis.tables import reasons
 from campaigns.campaign import Campaign
 from campaigns.cluster import Resources, connect, share_cores
 from campaigns.directory import CampaignDirectory
-from campaigns.display import display, show_once
 from campaigns.estimate import count_by_state
 from campaigns.expansion import expand
+from campaigns.job_state import CORRUPT, JobState, states
 from campaigns.plan import decide
-from campaigns.run import Run
-from campaigns.state import CORRUPT, JobState, states
+from campaigns.progress import display, show_once
+from campaigns.runner import Run
 from campaigns.study import Study, find_study, read_study
 from engine.errors import JobError, SceneError, in_words
 
