@@ -6,10 +6,10 @@ from pathlib import Path
 import typer
 
 from analysis.accuracy.report import report
-from analysis.plots import plots as draw
-from analysis.remnant import latest, measure
-from analysis.tables import printed, reasons, shape_table, unresolved
-from analysis.variables import OUTCOMES
+from analysis.remnant.outcome import latest, measure
+from analysis.report.products import plots as draw
+from analysis.results.tables import printed, reasons, shape_table, unresolved
+from analysis.results.variables import OUTCOMES
 from engine.errors import JobError, RunFault, SceneError, in_words
 from engine.job.directory import JobDirectory
 

@@ -10,8 +10,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from analysis.collect import collect as collect_results
-from analysis.tables import reasons
+from analysis.results.collect import collect as collect_results
+from analysis.results.tables import reasons
 from campaigns.campaign import Campaign
 from campaigns.cluster import Resources, connect, share_cores
 from campaigns.directory import CampaignDirectory

@@ -12,8 +12,8 @@ from matplotlib.lines import Line2D
 from analysis.accuracy.cases import SEVERAL
 from analysis.accuracy.measure import MEASURED
 from analysis.campaign import NONE
-from analysis.figures.style import GREY, MARKERS
-from analysis.variables import OUTCOMES
+from analysis.report.figures.style import GREY, MARKERS
+from analysis.results.variables import OUTCOMES
 from engine.verification.accuracy.log_axes import label_decades
 from engine.verification.accuracy.pareto import pareto
 

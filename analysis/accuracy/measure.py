@@ -5,8 +5,8 @@ import xarray as xr
 
 from analysis.accuracy.cases import BASE, Case
 from analysis.accuracy.orders import orders
-from analysis.statistics import Difference, count, difference, interval, paired_difference, resolved
-from analysis.variables import OUTCOMES
+from analysis.results.statistics import Difference, count, difference, interval, paired_difference, resolved
+from analysis.results.variables import OUTCOMES
 
 MEASURED = ("mass_ratio", "b_over_a", "c_over_a", "bulk_density")
 """Outcomes that are compared."""

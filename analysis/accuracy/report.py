@@ -9,8 +9,8 @@ from analysis.accuracy.cases import cases
 from analysis.accuracy.figure import error_against_cost
 from analysis.accuracy.measure import DRIFTS, MEASURED, accuracy
 from analysis.campaign import read_campaign
-from analysis.collect import collect
-from analysis.figures.style import save
+from analysis.report.figures.style import save
+from analysis.results.collect import collect
 from engine.errors import SceneError
 from engine.job.storage import write_dataset, write_text
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.particles import Array
+from analysis.remnant.particles import Array
 
 THIN = 4.0
 """A remnant whose shortest axis is below this many particle spacings h is thin: its c/a is not resolved."""

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from analysis.particles import Array, Integers, Particles
+from analysis.remnant.particles import Array, Integers, Particles
 from engine.constants import G_NEWTON
 
 LINKING_LENGTH = 1.5

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import trimesh
 
-from analysis.particles import Array
-from analysis.shape import Ellipsoid, ellipsoid_from, ellipsoid_of
+from analysis.remnant.ellipsoid import Ellipsoid, ellipsoid_from, ellipsoid_of
+from analysis.remnant.particles import Array
 
 NAN = float("nan")
 

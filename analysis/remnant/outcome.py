@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.clumps import as_points, bound_to_largest, clumps_of
-from analysis.hull import hull_of
-from analysis.ledger import drifts, read_history
-from analysis.particles import Particles, read_particles, snapshots
-from analysis.settling import is_settled, shape_change
-from analysis.shape import THIN, bulk_density, ellipsoid_of
-from analysis.spin import spin_period
-from analysis.variables import DAMAGED
+from analysis.remnant.conservation import drifts, read_history
+from analysis.remnant.ellipsoid import THIN, bulk_density, ellipsoid_of
+from analysis.remnant.fragments import as_points, bound_to_largest, clumps_of
+from analysis.remnant.hull import hull_of
+from analysis.remnant.particles import Particles, read_particles, snapshots
+from analysis.remnant.settling import is_settled, shape_change
+from analysis.remnant.spin import spin_period
+from analysis.results.variables import DAMAGED
 from engine.errors import JobError, RunFault
 from engine.job.directory import JobDirectory
 from engine.scene.scene import scene_in
@@ -29,7 +29,7 @@ class Outcome:
     Attributes:
         state: as in `Status`, or `corrupt`.
         reason: one line on why there are no numbers, empty otherwise.
-        numbers: the variables of `analysis.variables.OUTCOMES` of a job that is done, none of any other.
+        numbers: the variables of `analysis.results.variables.OUTCOMES` of a job that is done, none of any other.
     """
 
     state: str
@@ -74,7 +74,7 @@ def latest(job: JobDirectory) -> Particles:
 
 
 def measure(job: JobDirectory, particles: Particles) -> Numbers:
-    """Every variable of `analysis.variables.OUTCOMES`.
+    """Every variable of `analysis.results.variables.OUTCOMES`.
 
     Args:
         job: the job directory, for its scene, history and snapshots.

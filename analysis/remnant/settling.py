@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from analysis.clumps import largest_clump
-from analysis.particles import Particles, read_particles, snapshots
-from analysis.shape import Ellipsoid, ellipsoid_of
+from analysis.remnant.ellipsoid import Ellipsoid, ellipsoid_of
+from analysis.remnant.fragments import largest_clump
+from analysis.remnant.particles import Particles, read_particles, snapshots
 from engine.job.directory import JobDirectory
 
 WINDOW = 0.1

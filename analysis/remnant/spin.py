@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from analysis.particles import Array
-from analysis.shape import inertia
+from analysis.remnant.ellipsoid import inertia
+from analysis.remnant.particles import Array
 
 ROUND_OFF = 1e-12
 """Relative size below which a moment of inertia or an angular momentum is only round-off."""

@@ -11,8 +11,8 @@ import xarray as xr
 from jinja2 import Environment, PackageLoader
 
 from analysis.campaign import Campaign
-from analysis.figures.style import Directories
-from analysis.tables import as_shown, reasons, shape_table, unresolved
+from analysis.report.figures.style import Directories
+from analysis.results.tables import as_shown, reasons, shape_table, unresolved
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_text
 
@@ -27,7 +27,7 @@ CAPTIONS = {
 DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
 
 _page = Environment(
-    loader=PackageLoader("analysis"), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    loader=PackageLoader("analysis.report"), autoescape=True, trim_blocks=True, lstrip_blocks=True
 ).get_template("report.html")
 
 

@@ -5,14 +5,14 @@ from pathlib import Path
 import xarray as xr
 
 from analysis.campaign import read_campaign
-from analysis.collect import collect
-from analysis.figures.angle import shape_versus_angle
-from analysis.figures.conservation import conservation
-from analysis.figures.gallery import gallery
-from analysis.figures.maps import maps
-from analysis.figures.style import save
-from analysis.report import write_report
-from analysis.tables import write_shape_table
+from analysis.report.figures.angle import shape_versus_angle
+from analysis.report.figures.conservation import conservation
+from analysis.report.figures.gallery import gallery
+from analysis.report.figures.maps import maps
+from analysis.report.figures.style import save
+from analysis.report.page import write_report
+from analysis.results.collect import collect
+from analysis.results.tables import write_shape_table
 
 
 def plots(campaign_directory: Path) -> tuple[xr.Dataset, list[Path]]:

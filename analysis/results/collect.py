@@ -9,9 +9,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from analysis.campaign import NONE, Campaign, Scalar, plain, read_campaign
-from analysis.error_bars import combine
-from analysis.remnant import Outcome, outcome
-from analysis.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
+from analysis.remnant.outcome import Outcome, outcome
+from analysis.results.error_bars import combine
+from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_dataset
 
@@ -22,7 +22,7 @@ ALWAYS = ("velocity", "angle", "end_time")
 def collect(campaign_directory: Path) -> xr.Dataset:
     """Measure every job, write results.nc into the campaign directory and return it.
 
-    With error bars the jobs are in members.nc, and results.nc holds what they say together (analysis.error_bars).
+    With error bars the jobs are in members.nc, and results.nc holds what they say together (see error_bars.py).
     Cells without an outcome are NaN and carry the state of their job. Parameters in which jobs differ are
     coordinates; those all jobs share are attributes.
 

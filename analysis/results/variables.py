@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
-from analysis.clumps import LINKING_LENGTH
-from analysis.settling import TOLERANCE, WINDOW
-from analysis.shape import THIN
+from analysis.remnant.ellipsoid import THIN
+from analysis.remnant.fragments import LINKING_LENGTH
+from analysis.remnant.settling import TOLERANCE, WINDOW
 
 DAMAGED = 0.5
 """A particle with more damage than this counts as damaged."""

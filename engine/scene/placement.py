@@ -1,4 +1,4 @@
-"""Particles of a homogeneous sphere: uniform, without a preferred direction, and the same for the same seed."""
+"""Where the particles of a homogeneous sphere or box are, around its centre."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,8 @@ FACE_CENTRED = np.array([[0.0, 0.0, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5
 
 def sphere_points(count: int, radius: float, generator: np.random.Generator) -> NDArray[np.float64]:
     """Exactly `count` points of a randomly turned and shifted face-centred lattice, centred on their mean.
+
+    Uniform, without a preferred direction, and the same for the same generator.
 
     Args:
         count: number of points.
@@ -27,3 +29,17 @@ def sphere_points(count: int, radius: float, generator: np.random.Generator) -> 
     nearest = np.argsort(np.einsum("ij,ij->i", points, points), kind="stable")[:count]
     chosen = points[np.sort(nearest)]
     return radius * np.asarray(chosen - chosen.mean(axis=0))
+
+
+def box_points(lattice: tuple[int, int, int], size: tuple[float, float, float]) -> NDArray[np.float64]:
+    """Centres of the cells into which a lattice divides a box around the origin.
+
+    Args:
+        lattice: cells along each edge.
+        size: edges [m].
+
+    Returns:
+        Positions [m], shape [count, 3].
+    """
+    axes = [edge * ((np.arange(count) + 0.5) / count - 0.5) for count, edge in zip(lattice, size, strict=True)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)

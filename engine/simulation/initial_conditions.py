@@ -6,9 +6,8 @@ from numpy.typing import NDArray
 from engine.constants import G_NEWTON
 from engine.laws.flaws import Flaws, draw_flaws, join
 from engine.scene.bodies import Body, Box, Solid
-from engine.scene.cuboid import box_points
 from engine.scene.material import Material
-from engine.scene.placement import sphere_points
+from engine.scene.placement import box_points, sphere_points
 from engine.scene.scene import Scene
 from engine.state.particles import Arrays
 

@@ -10,6 +10,7 @@ import xarray as xr
 import campaigns.cli
 import campaigns.runner
 import campaigns.worker
+from tests.helpers import fake_engine
 from tests.helpers.undamaged_results import SOUND
 
 STUDY = """
@@ -75,7 +76,7 @@ def command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], runs: Path, collected: list[Path]
 ) -> Iterator[Command]:
     """Run `python -m campaigns` in this process with the fake engine."""
-    monkeypatch.setattr(campaigns.worker, "ENGINE", (sys.executable, str(Path(__file__).with_name("fake_engine.py"))))
+    monkeypatch.setattr(campaigns.worker, "ENGINE", (sys.executable, str(Path(fake_engine.__file__))))
     monkeypatch.setattr(campaigns.runner, "PERIOD", 0.05)
     handler = signal.getsignal(signal.SIGTERM)
 

@@ -15,7 +15,7 @@ import pytest
 from campaigns.job_state import status_of
 
 ROOT = Path(__file__).parents[2]
-DRIVER = Path(__file__).with_name("driver.py")
+DRIVER = ROOT / "tests" / "helpers" / "campaign_driver.py"
 
 
 def start(study: Path, runs: Path, verb: str = "run", seconds: float = 60.0) -> subprocess.Popen[str]:

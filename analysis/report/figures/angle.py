@@ -10,8 +10,8 @@ from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from analysis.figures.style import GREY, MARKERS, nothing_done, shades
-from analysis.tables import cells, series
+from analysis.report.figures.style import GREY, MARKERS, nothing_done, shades
+from analysis.results.tables import cells, series
 
 Look = dict[str, Any]
 

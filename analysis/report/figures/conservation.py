@@ -8,9 +8,9 @@ import xarray as xr
 from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 
-from analysis.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, shades
-from analysis.ledger import drifts, read_history
-from analysis.tables import cells
+from analysis.remnant.conservation import drifts, read_history
+from analysis.report.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, shades
+from analysis.results.tables import cells
 from engine.job.directory import JobDirectory
 from engine.scene.scene import scene_in
 

@@ -8,9 +8,9 @@ import xarray as xr
 from matplotlib import pyplot as plt
 from matplotlib.patches import Rectangle
 
-from analysis.figures.style import GREY, Directories, nothing_done
-from analysis.figures.views import Frame, Views, frame_around, views_of
-from analysis.tables import series
+from analysis.report.figures.style import GREY, Directories, nothing_done
+from analysis.report.figures.views import Frame, Views, frame_around, views_of
+from analysis.results.tables import series
 from engine.job.directory import JobDirectory
 
 WIDE, NARROW, GAP, CAPTION = 2.5, 1.7, 0.1, 0.46

@@ -9,8 +9,8 @@ from matplotlib import pyplot as plt
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from analysis.figures.style import GREY
-from analysis.tables import series
+from analysis.report.figures.style import GREY
+from analysis.results.tables import series
 
 PANELS = {
     "mass_ratio": (r"$M_\mathrm{lr}\,/\,M_\mathrm{target}$", 2.0),

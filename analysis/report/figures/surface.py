@@ -7,8 +7,8 @@ from matplotlib.colors import LightSource, to_rgb
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from analysis.figures.style import BLUE, ORANGE
-from analysis.particles import Array
+from analysis.remnant.particles import Array
+from analysis.report.figures.style import BLUE, ORANGE
 
 BALL = 0.8
 """Radius of a particle's ball in particle spacings: large enough to close the surface."""

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.clumps import largest_clump
-from analysis.figures.surface import Picture, picture
-from analysis.particles import Particles, read_particles
-from analysis.shape import ellipsoid_of
+from analysis.remnant.ellipsoid import ellipsoid_of
+from analysis.remnant.fragments import largest_clump
+from analysis.remnant.particles import Particles, read_particles
+from analysis.report.figures.surface import Picture, picture
 
 PIXELS = 720
 """Pixels across the longest remnant, at most."""

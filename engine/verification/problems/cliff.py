@@ -12,7 +12,7 @@ from engine.verification.check import Check, difference
 from engine.verification.harness import Array, Moment, begin, follow
 from engine.verification.problems.materials import elastic
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parents[1] / "data"
 GRAVITY, DENSITY, WIDTH = 9.81, 2000.0, 1.0
 FRICTION = float(np.tan(np.deg2rad(20.9)))
 THIN = 0.01

@@ -15,14 +15,14 @@ from analysis.accuracy.measure import accuracy
 from analysis.accuracy.orders import observed_order
 from analysis.accuracy.report import markdown
 from analysis.campaign import read_campaign
-from analysis.variables import OUTCOMES
+from analysis.results.variables import OUTCOMES
 from campaigns.expansion import expand
 from campaigns.study import find_study, read_study
 from engine.errors import SceneError
 from engine.job.storage import read_dataset, write_json
 from engine.scene.collision import Collision
 from engine.verification.accuracy.pareto import pareto
-from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
+from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 COUNTS = {"particles500": 500, "base": 1000, "particles4000": 4000, "particles32000": 32000}
 SCATTER = np.array([-1.0, 0.0, 1.0])

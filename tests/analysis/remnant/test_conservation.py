@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.ledger import drifts, read_history
+from analysis.remnant.conservation import drifts, read_history
 from engine.errors import JobError
 from engine.job.storage import write_dataset
 from engine.scene.collision import Collision
 from engine.scene.scene import Scene
-from tests.analysis.fake_jobs import history
+from tests.helpers.fake_jobs import history
 
 TIMES = np.linspace(-500.0, 1000.0, 4)
 

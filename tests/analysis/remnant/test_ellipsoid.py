@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from analysis.shape import bulk_density, ellipsoid_of
-from tests.analysis.fake_jobs import RHO0, lattice_ellipsoid
+from analysis.remnant.ellipsoid import bulk_density, ellipsoid_of
+from tests.helpers.fake_jobs import RHO0, lattice_ellipsoid
 
 ratio = st.floats(0.15, 1.0)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.clumps import Clumps, as_points, bound_to_largest, friends_of_friends
+from analysis.remnant.fragments import Clumps, as_points, bound_to_largest, friends_of_friends
 from engine.constants import G_NEWTON
 
 LINE = np.array([[0.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0], [5.0, 0, 0]])

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from analysis.hull import hull_of, hull_of_mesh
-from analysis.shape import ellipsoid_of
-from tests.analysis.fake_jobs import lattice_ellipsoid
+from analysis.remnant.ellipsoid import ellipsoid_of
+from analysis.remnant.hull import hull_of, hull_of_mesh
+from tests.helpers.fake_jobs import lattice_ellipsoid
 
 
 def test_a_box_is_measured_exactly() -> None:

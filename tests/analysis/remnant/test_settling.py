@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.particles import read_particles
-from analysis.settling import TOLERANCE, is_settled, shape_change
+from analysis.remnant.particles import read_particles
+from analysis.remnant.settling import TOLERANCE, is_settled, shape_change
 from engine.errors import JobError
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_dataset
-from tests.analysis.fake_jobs import lattice_ellipsoid, particles
+from tests.helpers.fake_jobs import lattice_ellipsoid, particles
 
 POINTS, SPACING = lattice_ellipsoid((2e5, 1e5, 8e4), 300)
 

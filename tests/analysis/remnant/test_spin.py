@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from analysis.spin import angular_velocity, spin_period
-from tests.analysis.fake_jobs import lattice_ellipsoid
+from analysis.remnant.spin import angular_velocity, spin_period
+from tests.helpers.fake_jobs import lattice_ellipsoid
 
 OMEGA = np.array([1e-4, -2e-4, 3e-4])
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis.plots import plots
+from analysis.report.products import plots
 from engine.job.storage import write_json
-from tests.analysis.fake_jobs import write_job
-from tests.analysis.test_plots import campaign, collision, grid
+from tests.analysis.report.test_products import campaign, collision, grid
+from tests.helpers.fake_jobs import write_job
 
 COORDS = {"velocity": [100.0, 200.0], "angle": [5.0, 15.0]}
 

@@ -10,15 +10,15 @@ import pytest
 from typer.testing import CliRunner
 
 from analysis.__main__ import app, main
-from analysis.collect import collect
-from analysis.figures.angle import shape_versus_angle
-from analysis.figures.surface import picture
-from analysis.plots import plots
-from analysis.tables import printed, reasons, series, shape_table
+from analysis.report.figures.angle import shape_versus_angle
+from analysis.report.figures.surface import picture
+from analysis.report.products import plots
+from analysis.results.collect import collect
+from analysis.results.tables import printed, reasons, series, shape_table
 from engine.job.storage import write_dataset
 from engine.scene.collision import Collision
 from engine.scene.scene import scene_in
-from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
+from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 FIGURES = ("shape_vs_angle", "maps", "remnants", "conservation")
 

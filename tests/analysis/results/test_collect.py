@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from analysis.collect import collect
-from analysis.variables import OUTCOMES, TEXTS
+from analysis.results.collect import collect
+from analysis.results.variables import OUTCOMES, TEXTS
 from engine.errors import SceneError
 from engine.job.storage import read_dataset, write_json
 from engine.scene.collision import Collision
-from tests.analysis.fake_jobs import (
+from tests.helpers.fake_jobs import (
     RHO0,
     history,
     lattice_ellipsoid,

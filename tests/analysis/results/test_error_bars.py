@@ -8,15 +8,15 @@ import pytest
 import xarray as xr
 from matplotlib import pyplot as plt
 
-from analysis.collect import collect
-from analysis.error_bars import combine
-from analysis.figures.angle import shape_versus_angle
-from analysis.plots import plots
-from analysis.tables import printed, shape_table, unresolved
-from analysis.variables import OUTCOMES
+from analysis.report.figures.angle import shape_versus_angle
+from analysis.report.products import plots
+from analysis.results.collect import collect
+from analysis.results.error_bars import combine
+from analysis.results.tables import printed, shape_table, unresolved
+from analysis.results.variables import OUTCOMES
 from engine.job.storage import read_dataset
 from engine.scene.collision import Collision
-from tests.analysis.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
+from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 COORDS = {"velocity": [200.0], "angle": [5.0, 15.0], "resolution": ["coarse", "fine"], "seed": [1, 2]}
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from analysis.statistics import difference, interval, paired_difference, resolved, standard_error
+from analysis.results.statistics import difference, interval, paired_difference, resolved, standard_error
 
 
 def seeds(*values: float) -> xr.DataArray:

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-import engine.gravity.self_gravity
 from engine.device import backend
+from engine.gravity import self_gravity
 from engine.gravity.net_force import without_net_effect
 from engine.scene.collision import Collision
 from engine.scene.scene import Gravity
@@ -19,7 +19,7 @@ def measure(interval: float, corrected: bool) -> dict[str, Any]:
     """Drift of energy and angular momentum of a (100 m/s, 15 deg) collision; `corrected` as the engine does it."""
     backend.start(threads=1)
     if not corrected:
-        engine.gravity.self_gravity.without_net_effect = lambda pull, x, mass: (
+        self_gravity.without_net_effect = lambda pull, x, mass: (
             pull,
             without_net_effect(pull, x, mass)[1],
         )

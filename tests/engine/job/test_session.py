@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.particles import snapshots
+from analysis.remnant.particles import snapshots
 from engine import PHYSICS_VERSION
 from engine.job.directory import JobDirectory
 from engine.job.session import Options, run_job

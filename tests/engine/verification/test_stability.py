@@ -16,7 +16,7 @@ from engine.device.precision import chosen
 from engine.job.directory import JobDirectory
 from engine.job.storage import read_dataset
 from engine.verification.processes import in_own_process
-from engine.verification.stability import matrix
+from engine.verification.stability import heat_map, matrix
 from engine.verification.stability.case import Case, alone, uniform
 from engine.verification.stability.cases import FREE, all_cases
 from engine.verification.stability.measures import LARGEST_GROWTH, Measures
@@ -26,7 +26,7 @@ from engine.verification.stability.von_neumann import BLOCKS, Block, Limit
 
 CASES = all_cases()
 BY_NAME = {(case.group, case.name): case for case in CASES}
-RECORDED = Path(engine.simulation.guard.__file__).parent / "verification" / "stability" / "stability.csv"
+RECORDED = Path(heat_map.__file__).with_name("stability.csv")
 
 FAST = [
     ("speed", "20000 m/s"),
