@@ -7,7 +7,7 @@ import xarray as xr
 
 from engine.errors import JobError
 from engine.job.storage import read_dataset
-from engine.scene.bodies import Solid
+from engine.scene.bodies import Body
 from engine.scene.scene import Scene
 
 NEGLIGIBLE = 1e-6
@@ -58,7 +58,7 @@ def _scales(scene: Scene) -> tuple[float, float]:
     return momentum, total if total > NEGLIGIBLE * largest else 0.0
 
 
-def _angular_momentum(body: Solid) -> np.ndarray:
+def _angular_momentum(body: Body) -> np.ndarray:
     return np.asarray(body.mass * np.cross(body.position, body.velocity) + body.spin_momentum)
 
 

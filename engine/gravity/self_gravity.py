@@ -35,7 +35,7 @@ class SelfGravity(ABC):
 
     def __init__(self, particles: Any, radius: float, places: int) -> None:
         self.particles, self.count = particles, particles.count
-        self.acceleration = particles.hold("acceleration")
+        self.acceleration = particles.require("acceleration")
         self.ball, self.radius = radius, ti.field(Real, ())
         shape = capacity(places)
         self.x, self.y, self.z, self.mu = (ti.field(Real, shape) for _ in range(4))

@@ -31,7 +31,7 @@ def save_checkpoint(job: JobDirectory, simulation: Simulation, progress: dict[st
         simulation: what to save, between two calls of `advance`.
         progress: what the caller needs to go on, such as the times of its next outputs.
     """
-    state = simulation.particles.read(*simulation.particles.held)
+    state = simulation.particles.read(*simulation.particles.allocated)
     variables = {name: (_dimensions(name, values.ndim), values) for name, values in state.items()}
     clock = {name: kind(getattr(simulation.clock, name)[None]) for name, kind in CLOCK.items()}
     events = {name: float(getattr(simulation, name)) for name in EVENTS}
@@ -82,13 +82,13 @@ def _readable(path: Path, particles: Particles) -> xr.Dataset | None:
         dataset = read_dataset(path)
     except JobError:
         return None
-    whole = set(particles.held) <= set(dataset.data_vars) and set(dataset.attrs) >= ATTRIBUTES
+    whole = set(particles.allocated) <= set(dataset.data_vars) and set(dataset.attrs) >= ATTRIBUTES
     return dataset if whole and dataset.sizes["particle"] == particles.count and is_finite(dataset) else None
 
 
 def _restore(dataset: xr.Dataset, simulation: Simulation) -> dict[str, float]:
     attributes = dict(dataset.attrs)
-    simulation.particles.write({name: dataset[name].values for name in simulation.particles.held})
+    simulation.particles.write({name: dataset[name].values for name in simulation.particles.allocated})
     simulation.use_stored_blocks()
     for name, kind in CLOCK.items():
         getattr(simulation.clock, name)[None] = kind(attributes.pop(name))

@@ -17,7 +17,7 @@ class Damage:
     """
 
     def __init__(self, particles: Any, fracture: Any) -> None:
-        self.root, self.index, self.fracture = particles.hold("root"), particles.index, fracture
+        self.root, self.index, self.fracture = particles.require("root"), particles.index, fracture
 
     @ti.func
     def value(self, p):

@@ -16,7 +16,7 @@ class InternalEnergy:
     """
 
     def __init__(self, particles: Any) -> None:
-        self.E = particles.hold("E")
+        self.E = particles.require("E")
 
     @ti.func
     def after(self, p, work):
@@ -30,7 +30,7 @@ class InternalEnergy:
 
 
 @ti.data_oriented
-class Barotropic:
+class NoInternalEnergy:
     """Matter whose pressure depends on density alone, and which keeps no energy."""
 
     @ti.func

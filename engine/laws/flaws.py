@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.scene.bodies import Solid
-from engine.scene.material import Fracture
+from engine.scene.bodies import Body
+from engine.scene.material import FractureRules
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Flaws:
     strain: NDArray[np.float64]
 
 
-def draw_flaws(body: Solid, fracture: Fracture, generator: np.random.Generator) -> Flaws:
+def draw_flaws(body: Body, fracture: FractureRules, generator: np.random.Generator) -> Flaws:
     """Flaws of one body, the weakest first, each given to a random particle."""
     owner = _owners(body.count, fracture, generator)
     number = np.arange(1, len(owner) + 1)
@@ -33,7 +33,7 @@ def draw_flaws(body: Solid, fracture: Fracture, generator: np.random.Generator) 
     return Flaws(first.astype(np.int32), strain[order])
 
 
-def _owners(particles: int, fracture: Fracture, generator: np.random.Generator) -> NDArray[np.int64]:
+def _owners(particles: int, fracture: FractureRules, generator: np.random.Generator) -> NDArray[np.int64]:
     """The particle that each flaw falls on."""
     if fracture.flaws == "2NlnN":
         return np.asarray(generator.integers(particles, size=round(2.0 * particles * np.log(particles))))

@@ -7,8 +7,8 @@ import taichi as ti
 from engine.device.backend import Real, filled
 from engine.device.tensors import largest_eigenvalue, norm_squared
 from engine.laws.flaws import Flaws
-from engine.scene import material as materials
-from engine.scene.bodies import Solid
+from engine.scene.bodies import Body
+from engine.scene.material import FractureRules, Material
 
 
 @ti.data_oriented
@@ -21,7 +21,7 @@ class Fracture:
         flaws: activation strains of every particle.
     """
 
-    def __init__(self, bodies: Sequence[Solid], rule: materials.Fracture, flaws: Flaws) -> None:
+    def __init__(self, bodies: Sequence[Body], rule: FractureRules, flaws: Flaws) -> None:
         self.per_flaw = rule.per_flaw
         self.table = ti.types.struct(modulus=Real, rate=Real).field(shape=len(bodies))
         for i, body in enumerate(bodies):
@@ -75,6 +75,6 @@ class Unbreakable:
         return root
 
 
-def _strain_modulus(rule: materials.Fracture, material: materials.Material) -> float:
+def _strain_modulus(rule: FractureRules, material: Material) -> float:
     """Modulus [Pa] that turns the largest tensile stress into the local strain."""
     return material.young_modulus if rule.strain == "young" else material.longitudinal_modulus

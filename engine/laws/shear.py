@@ -19,7 +19,7 @@ from engine.device.tensors import (
     pack,
     unpack,
 )
-from engine.laws.strength import retained
+from engine.laws.strength import return_factor
 from engine.scene.material import Material
 
 SMALL_GROWTH = 0.1
@@ -59,7 +59,7 @@ class Hencky:
     """
 
     def __init__(self, particles: Any, strength: Any, materials: Sequence[Material]) -> None:
-        self.B, self.strength = particles.hold("B"), strength
+        self.B, self.strength = particles.require("B"), strength
         self.table = ti.types.struct(modulus=Real).field(shape=len(materials))
         for i, material in enumerate(materials):
             self.table.modulus[i] = material.shear_modulus
@@ -75,7 +75,7 @@ class Hencky:
         if Y > 0.0:
             remaining = deform(self.B[p], A, growth)
             strain = deviator(half_log(unpack(remaining)))
-            share = retained(2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain)), Y)
+            share = return_factor(2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain)), Y)
             if share < 1.0:
                 strain *= share
                 remaining = pack(exp_minus_identity(2.0 * strain))

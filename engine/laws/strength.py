@@ -54,7 +54,7 @@ class Unlimited:
 
 
 @ti.func
-def retained(root_J2, Y):
+def return_factor(root_J2, Y):
     """Share of the deviatoric strain that stays elastic: 1 up to the limit Y of sqrt(J2), their ratio beyond it."""
     share = ti.cast(1.0, Real)
     if root_J2 > Y:

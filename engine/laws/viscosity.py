@@ -4,7 +4,7 @@ import taichi as ti
 
 from engine.device.backend import Real, mat3
 from engine.device.tensors import deviator, identity
-from engine.scene import scene
+from engine.scene.scene import ViscosityCoefficients
 
 
 @ti.data_oriented
@@ -16,7 +16,7 @@ class Viscosity:
         dx: grid spacing [m].
     """
 
-    def __init__(self, coefficients: scene.Viscosity, dx: float) -> None:
+    def __init__(self, coefficients: ViscosityCoefficients, dx: float) -> None:
         constants = {**coefficients.model_dump(), "dx": dx}
         self.table = ti.types.struct(**dict.fromkeys(constants, Real)).field(shape=())
         for name, value in constants.items():

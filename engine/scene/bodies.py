@@ -15,7 +15,7 @@ MOST_PARTICLES = 2**30
 Count = Annotated[Whole, Field(ge=1, le=MOST_PARTICLES)]
 
 
-class Solid(Frozen):
+class Body(Frozen):
     """What bodies of every shape have in common."""
 
     name: str = "body"
@@ -56,7 +56,7 @@ class Solid(Frozen):
         return float((self.volume / self.count) ** (1.0 / 3.0))
 
 
-class Body(Solid):
+class Sphere(Body):
     """A homogeneous sphere of `particles` equal particles.
 
     hydrostatic: start under the pressure that its own gravity keeps; not given, where the scene has self-gravity.
@@ -92,7 +92,7 @@ class Body(Solid):
         return x, y, z
 
 
-class Box(Solid):
+class Box(Body):
     """A homogeneous cuboid around `position`: a rectangular lattice of `lattice` particles per edge."""
 
     size: PositiveVector

@@ -5,11 +5,11 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from engine.scene.bodies import MOST_PARTICLES, Body, Count
+from engine.scene.bodies import MOST_PARTICLES, Count, Sphere
 from engine.scene.fields import Finite, Frozen, NonNegative, Number, OrOff, Positive
 from engine.scene.input_errors import suggestion
-from engine.scene.material import PARAMETER_SETS, Fracture, Material
-from engine.scene.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, Viscosity
+from engine.scene.material import PARAMETER_SETS, FractureRules, Material
+from engine.scene.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, ViscosityCoefficients
 from engine.scene.two_body import Approach, approach
 
 
@@ -39,9 +39,9 @@ class Collision(Frozen):
     parameter_set: str = "sugiura2018"
     material: Material = Material()
     friction: NonNegative | None = None
-    fracture: Fracture | Literal[False] | None = None
+    fracture: FractureRules | Literal[False] | None = None
     gravity: OrOff[Gravity] = Gravity()
-    viscosity: OrOff[Viscosity] = None
+    viscosity: OrOff[ViscosityCoefficients] = None
     sound_speed: Fraction = 1.0
     numerics: Numerics = Numerics()
     output: Output = Output()
@@ -50,7 +50,7 @@ class Collision(Frozen):
     @classmethod
     def _rules_not_given_are_those_of_the_set(cls, given: Any, info: ValidationInfo) -> Any:
         rules = PARAMETER_SETS.get(str(info.data.get("parameter_set")))
-        changes = given.model_dump(exclude_unset=True) if isinstance(given, Fracture) else given
+        changes = given.model_dump(exclude_unset=True) if isinstance(given, FractureRules) else given
         return rules.fracture.model_dump() | changes if rules and isinstance(changes, dict) else given
 
     @field_validator("material")
@@ -83,7 +83,7 @@ class Collision(Frozen):
             )
         return self
 
-    def bodies_at_contact(self) -> tuple[Body, Body]:
+    def bodies_at_contact(self) -> tuple[Sphere, Sphere]:
         """Target and projectile, both still at the origin."""
         chosen = PARAMETER_SETS[self.parameter_set]
         friction = chosen.damaged_friction if self.friction is None else self.friction
@@ -91,8 +91,8 @@ class Collision(Frozen):
         small = self.radius if self.projectile_radius is None else self.projectile_radius
         share = max(1, round(self.particles * (small / self.radius) ** 3))
         return (
-            Body(name="target", radius=self.radius, particles=self.particles, material=material),
-            Body(name="projectile", radius=small, particles=share, material=material),
+            Sphere(name="target", radius=self.radius, particles=self.particles, material=material),
+            Sphere(name="projectile", radius=small, particles=share, material=material),
         )
 
     def approach(self) -> Approach:
@@ -126,7 +126,7 @@ class Collision(Frozen):
         )
 
 
-def _moved(body: Body, start: Approach, share: float) -> Body:
+def _moved(body: Sphere, start: Approach, share: float) -> Sphere:
     """The body at its share of the relative position and velocity."""
     position = tuple(rounded(share * value) for value in start.position)
     velocity = tuple(rounded(share * value) for value in start.velocity)

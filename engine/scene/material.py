@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from engine.scene.fields import Frozen, NonNegative, Number, Positive
 
 
-class Tillotson(Frozen):
+class TillotsonParameters(Frozen):
     """Tillotson constants; the defaults are basalt (Benz & Asphaug 1999)."""
 
     a: Positive = 0.5
@@ -31,7 +31,7 @@ class Material(Frozen):
     """One solid [SI units]; the defaults are basalt with the constants of Sugiura et al. 2018."""
 
     rho0: Positive = 2700.0
-    tillotson: Tillotson = Tillotson()
+    tillotson: TillotsonParameters = TillotsonParameters()
     shear_modulus: Positive = 2.27e10
     cohesion: NonNegative = 1.0e7
     intact_friction: NonNegative = 1.0
@@ -70,7 +70,7 @@ class Material(Frozen):
         return self.model_copy(update={"tillotson": softer, "shear_modulus": square * self.shear_modulus})
 
 
-class Fracture(Frozen):
+class FractureRules(Frozen):
     """Weibull flaws and Grady-Kipp damage growth (engine/physics.md, section 5).
 
     flaws: `covered` draws flaws until every particle holds one, `2NlnN` draws that many.
@@ -92,13 +92,13 @@ class ParameterSet(Frozen):
     """Everything in which two published set-ups of the same collision differ."""
 
     damaged_friction: float
-    fracture: Fracture
+    fracture: FractureRules
 
 
 PARAMETER_SETS = {
-    "sugiura2018": ParameterSet(damaged_friction=0.839, fracture=Fracture()),
+    "sugiura2018": ParameterSet(damaged_friction=0.839, fracture=FractureRules()),
     "talk": ParameterSet(
         damaged_friction=0.945,
-        fracture=Fracture(flaws="2NlnN", strain="young", growth_speed=0.5, per_flaw=False),
+        fracture=FractureRules(flaws="2NlnN", strain="young", growth_speed=0.5, per_flaw=False),
     ),
 }

@@ -8,7 +8,7 @@ from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator,
 from engine.constants import BLOCK_EDGE
 from engine.device.precision import Precision
 from engine.errors import SceneError
-from engine.scene.bodies import MOST_PARTICLES, Body, Box
+from engine.scene.bodies import MOST_PARTICLES, Box, Sphere
 from engine.scene.fields import (
     Finite,
     Frozen,
@@ -21,7 +21,7 @@ from engine.scene.fields import (
     read_table,
     validate,
 )
-from engine.scene.material import Fracture, Material
+from engine.scene.material import FractureRules, Material
 
 Fraction = Annotated[Number, Field(gt=0.0, le=1.0)]
 Seed = Annotated[Whole, Field(ge=0)]
@@ -30,11 +30,11 @@ Seed = Annotated[Whole, Field(ge=0)]
 def _shape(body: Any) -> str:
     """Which shape of body plain keys describe."""
     is_box = isinstance(body, Box) or (isinstance(body, dict) and ("lattice" in body or "size" in body))
-    return Box.__name__ if is_box else Body.__name__
+    return Box.__name__ if is_box else Sphere.__name__
 
 
 AnyBody = Annotated[
-    Annotated[Body, Tag(Body.__name__)] | Annotated[Box, Tag(Box.__name__)],
+    Annotated[Sphere, Tag(Sphere.__name__)] | Annotated[Box, Tag(Box.__name__)],
     Discriminator(_shape),
 ]
 
@@ -52,7 +52,7 @@ class Gravity(Frozen):
     opening: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.4
 
 
-class Viscosity(Frozen):
+class ViscosityCoefficients(Frozen):
     """Explicit viscous stress.
 
     shear: kinematic shear viscosity nu [m^2/s].
@@ -101,9 +101,9 @@ class Physics(Frozen):
     energy: bool = True
     shear: bool = True
     strength: bool = True
-    fracture: OrOff[Fracture] = Fracture()
+    fracture: OrOff[FractureRules] = FractureRules()
     gravity: OrOff[Gravity] = Gravity()
-    viscosity: OrOff[Viscosity] = None
+    viscosity: OrOff[ViscosityCoefficients] = None
     uniform_gravity: OrOff[Vector] = None
     walls: tuple[Wall, ...] = ()
     sound_speed: Fraction = 1.0
@@ -164,11 +164,12 @@ class Scene(Frozen):
     @classmethod
     def _bear_their_own_weight(cls, bodies: tuple[AnyBody, ...], info: ValidationInfo) -> tuple[AnyBody, ...]:
         physics = info.data.get("physics", Physics())
-        return tuple(body.balanced(physics.gravity is not None) if isinstance(body, Body) else body for body in bodies)
+        gravity = physics.gravity is not None
+        return tuple(body.balanced(gravity) if isinstance(body, Sphere) else body for body in bodies)
 
     @model_validator(mode="after")
     def _has_the_gravity_of_its_balance(self) -> Self:
-        if not self.physics.gravity and any(isinstance(body, Body) and body.hydrostatic for body in self.bodies):
+        if not self.physics.gravity and any(isinstance(body, Sphere) and body.hydrostatic for body in self.bodies):
             raise ValueError(
                 "'hydrostatic' pressure needs self-gravity to hold it: leave it out of the body, or set it to false"
             )

@@ -11,7 +11,7 @@ from engine.gravity.self_gravity import SelfGravity
 from engine.gravity.uniform import UniformGravity, Weightless
 from engine.laws.constitution import Constitution
 from engine.laws.damage import Damage, Intact
-from engine.laws.energy import Barotropic, InternalEnergy
+from engine.laws.energy import InternalEnergy, NoInternalEnergy
 from engine.laws.fracture import Fracture, Unbreakable
 from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
@@ -29,7 +29,7 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
     return Constitution(
         particles,
         Tillotson(materials) if physics.energy else ColdTillotson(materials),
-        InternalEnergy(particles) if physics.energy else Barotropic(),
+        InternalEnergy(particles) if physics.energy else NoInternalEnergy(),
         _shear(scene, particles),
         _damage(scene, particles),
         Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from engine.constants import G_NEWTON
 from engine.laws.flaws import Flaws, draw_flaws, join
-from engine.scene.bodies import Body, Box, Solid
+from engine.scene.bodies import Body, Box, Sphere
 from engine.scene.material import Material
 from engine.scene.placement import box_points, sphere_points
 from engine.scene.scene import Scene
@@ -35,7 +35,7 @@ def all_flaws(scene: Scene) -> Flaws:
 def _body_state(scene: Scene, index: int) -> Arrays:
     body = scene.bodies[index]
     points, pressure = _points(scene, index, body), np.zeros(body.count)
-    if isinstance(body, Body) and body.hydrostatic:
+    if isinstance(body, Sphere) and body.hydrostatic:
         pressure = _hydrostatic_pressure(body, points)
     mu, energy = compressed(pressure, scene.materials[index], scene.physics.energy)
     return {
@@ -69,21 +69,21 @@ def compressed(P: Vector, material: Material, energy: bool) -> tuple[Vector, Vec
     return mu, elastic * mu**2 / (material.rho0 * (1.0 + mu))
 
 
-def _points(scene: Scene, index: int, body: Body | Box) -> NDArray[np.float64]:
+def _points(scene: Scene, index: int, body: Sphere | Box) -> NDArray[np.float64]:
     """Positions relative to the centre [m], shape [particle_count, 3]."""
     if isinstance(body, Box):
         return box_points(body.lattice, body.size)
     return sphere_points(body.particles, body.radius, generator(scene, index, 0))
 
 
-def _hydrostatic_pressure(body: Body, points: NDArray[np.float64]) -> NDArray[np.float64]:
+def _hydrostatic_pressure(body: Sphere, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """P(r) = (2/3) pi G rho^2 (R^2 - r^2) [Pa] (engine/physics.md, section 8)."""
     square = np.einsum("ij,ij->i", points, points)
     pressure = 2.0 / 3.0 * np.pi * G_NEWTON * body.material.rho0**2 * np.maximum(body.radius**2 - square, 0.0)
     return np.asarray(pressure)
 
 
-def _spin_tensor(body: Solid) -> NDArray[np.float64]:
+def _spin_tensor(body: Body) -> NDArray[np.float64]:
     """Velocity gradient [1/s] of rigid rotation."""
     x, y, z = body.spin
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

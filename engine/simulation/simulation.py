@@ -12,7 +12,7 @@ from engine.errors import SMALLER_STEPS, stop
 from engine.gravity.self_gravity import SelfGravity
 from engine.mpm.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.mpm.transfer import LARGEST_INCREMENT, Transfer
-from engine.scene.bodies import Solid
+from engine.scene.bodies import Body
 from engine.scene.material import Material
 from engine.scene.scene import Scene
 from engine.simulation import assembly
@@ -180,7 +180,7 @@ class Simulation:
         return np.array([body.material.rho0 for body in self.scene.bodies])[state["body"]]
 
 
-def _fastest(body: Solid, material: Material) -> float:
+def _fastest(body: Body, material: Material) -> float:
     """Highest signal speed [m/s] in an unstressed body."""
     rotation = float(np.linalg.norm(body.spin)) * body.reach
     return material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + rotation

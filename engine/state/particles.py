@@ -10,7 +10,7 @@ from engine.device.backend import Real, capacity, mat3, overwrite, place3, vec3,
 
 Arrays = dict[str, NDArray[Any]]
 
-KINDS = {
+FIELD_TYPES = {
     "x": place3,
     "v": vec3,
     "C": mat3,
@@ -26,7 +26,7 @@ KINDS = {
 }
 """Type of every quantity."""
 
-ALWAYS = ("x", "v", "C", "j", "tau", "mass", "body", "origin")
+CORE_FIELDS = ("x", "v", "C", "j", "tau", "mass", "body", "origin")
 """Quantities without which no particle moves."""
 
 
@@ -50,24 +50,24 @@ class Particles:
         self.count = count
         self.index = ti.field(ti.i32, capacity(count))
         self._number(np.arange(count, dtype=np.int32))
-        for name in ALWAYS:
-            self.hold(name)
+        for name in CORE_FIELDS:
+            self.require(name)
 
-    def hold(self, name: str) -> Any:
+    def require(self, name: str) -> Any:
         """The field of a quantity, made when it is first asked for."""
-        if name not in self.held:
-            kind, shape = KINDS[name], capacity(self.count)
+        if name not in self.allocated:
+            kind, shape = FIELD_TYPES[name], capacity(self.count)
             setattr(self, name, kind.field(shape=shape) if hasattr(kind, "field") else ti.field(kind, shape))
         return getattr(self, name)
 
     @property
-    def held(self) -> tuple[str, ...]:
+    def allocated(self) -> tuple[str, ...]:
         """Names of the quantities that have a field: what a checkpoint holds."""
-        return tuple(name for name in KINDS if name in vars(self))
+        return tuple(name for name in FIELD_TYPES if name in vars(self))
 
     def read(self, *names: str) -> Arrays:
         """Copies of the named quantities in double precision, of all when none is named; first axis the particle."""
-        return {name: self._values(name) for name in names or KINDS}
+        return {name: self._values(name) for name in names or FIELD_TYPES}
 
     def write(self, arrays: Arrays) -> None:
         """Overwrite the named quantities.
@@ -76,7 +76,7 @@ class Particles:
             ValueError: a quantity that no part holds would not be zero.
         """
         for name, values in arrays.items():
-            if name in self.held:
+            if name in self.allocated:
                 overwrite(getattr(self, name), values[self.order])
             elif np.any(values):
                 raise ValueError(f"no part of the scene holds '{name}': it can only be zero")
@@ -88,7 +88,7 @@ class Particles:
             order: number of the particle that each place receives, shape [particle_count].
         """
         source = np.argsort(self.order)[order]
-        for field in (getattr(self, name) for name in self.held):
+        for field in (getattr(self, name) for name in self.allocated):
             overwrite(field, field.to_numpy()[source])
         self._number(order)
 
@@ -97,10 +97,10 @@ class Particles:
         overwrite(self.index, order)
 
     def _values(self, name: str) -> NDArray[Any]:
-        if name in self.held:
+        if name in self.allocated:
             values = getattr(self, name).to_numpy()[: self.count]
             result = np.empty(values.shape, np.float64 if values.dtype.kind == "f" else values.dtype)
             result[self.order] = values
             return result
-        kind = KINDS[name]
+        kind = FIELD_TYPES[name]
         return np.zeros((self.count, *(kind.get_shape() if hasattr(kind, "get_shape") else ())))

@@ -17,7 +17,7 @@ from rich.table import Table
 
 from engine.device import backend
 from engine.profile.parts import allocated_bytes, parts_of
-from engine.scene.scene import Gravity, Scene, Viscosity, Wall
+from engine.scene.scene import Gravity, Scene, ViscosityCoefficients, Wall
 from engine.simulation.simulation import Simulation
 from tests.benchmarks.contact import in_contact, take_step
 from tests.benchmarks.host import commit, host
@@ -30,7 +30,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "without strength, fracture": {"strength": False, "fracture": None},
     "without shear, strength, fracture": {"shear": False, "strength": False, "fracture": None},
     "without gravity": {"gravity": None},
-    "with viscosity": {"viscosity": Viscosity(shear=1e5, shock_linear=1.0, shock_quadratic=2.0)},
+    "with viscosity": {"viscosity": ViscosityCoefficients(shear=1e5, shock_linear=1.0, shock_quadratic=2.0)},
     "with a wall": {"walls": (Wall(point=(0.0, 0.0, -1e7), friction=0.5),)},
 }
 STATES = {"intact": (1.5, -200.0), "rubble": (1.05, 100.0)}
@@ -98,7 +98,7 @@ def variant(whole: Simulation, changes: Results) -> Simulation:
     """The scene with other physics, in the state of the whole one as far as its parts hold it."""
     physics = whole.scene.physics.model_copy(update=changes)
     result = Simulation(whole.scene.model_copy(update={"physics": physics}))
-    result.particles.write(whole.particles.read(*result.particles.held))
+    result.particles.write(whole.particles.read(*result.particles.allocated))
     result.use_stored_blocks()
     result.clock.rate[None], result.clock.time[None] = whole.clock.rate[None], whole.time
     result.clock.pause_time[None] = whole.scene.end_time

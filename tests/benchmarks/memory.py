@@ -16,7 +16,7 @@ GRID_PASSES = 4
 def bytes_per_step(simulation: Simulation) -> float:
     """Least traffic of one step with memory, per particle, when nothing stays in cache from kernel to kernel."""
     particles, transfer = simulation.particles, simulation.transfer
-    names = [name for name in (*PARTICLES_TO_GRID, *GRID_TO_PARTICLES, *UPDATED) if name in particles.held]
+    names = [name for name in (*PARTICLES_TO_GRID, *GRID_TO_PARTICLES, *UPDATED) if name in particles.allocated]
     state = sum(entry_bytes(getattr(particles, name)) for name in names)
     copies = int(transfer.block_count[None]) * COPY
     return state + GRID_PASSES * copies * entry_bytes(transfer.nodes) / particles.count

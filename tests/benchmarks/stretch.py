@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from engine.device.backend import mat3, overwrite, vec3
 from engine.device.tensors import identity, pack, unpack
 from engine.laws.constitution import Constitution, ddot, strain_increment
-from engine.laws.strength import retained
+from engine.laws.strength import return_factor
 from engine.state.particles import Arrays
 
 
@@ -61,7 +61,7 @@ class StretchConstitution(Constitution):
         logs = vec3(ti.log(S[0, 0]), ti.log(S[1, 1]), ti.log(S[2, 2]))
         strain = logs - logs.sum() / 3.0
         root_J2 = 2.0 * G / J * ti.sqrt(0.5 * strain.norm_sqr())
-        share = retained(root_J2, self.shear.strength.limit(P, E, self.damage.value(p), body))
+        share = return_factor(root_J2, self.shear.strength.limit(P, E, self.damage.value(p), body))
         elastic = F
         if share < 1.0:
             elastic = U @ diagonal(ti.exp(logs - (1.0 - share) * strain)) @ V.transpose()

@@ -6,8 +6,8 @@ from math import inf
 import numpy as np
 
 from engine.laws.flaws import Flaws, draw_flaws
-from engine.scene.bodies import Body
-from engine.scene.material import Fracture, Material
+from engine.scene.bodies import Sphere
+from engine.scene.material import FractureRules, Material
 from engine.verification.check import Check, share
 from engine.verification.harness import Array, timed
 from engine.verification.problems.specimen import Specimen
@@ -33,14 +33,14 @@ class Pull:
     steps: int = 2000
 
     @property
-    def body(self) -> Body:
+    def body(self) -> Sphere:
         """The bar, by its volume."""
-        return Body(radius=self.radius, particles=self.particles)
+        return Sphere(radius=self.radius, particles=self.particles)
 
     @property
     def flaws(self) -> Flaws:
         """The same flaws for both integrations."""
-        return draw_flaws(self.body, Fracture(), np.random.default_rng(1))
+        return draw_flaws(self.body, FractureRules(), np.random.default_rng(1))
 
     @property
     def strain(self) -> float:
@@ -54,7 +54,7 @@ class Pull:
 
     def engine(self) -> Array:
         """Mean axial stress [Pa] after every step, by the engine's laws."""
-        specimen = Specimen(self.body, Fracture(), self.flaws)
+        specimen = Specimen(self.body, FractureRules(), self.flaws)
         with timed():
             return np.array([specimen.stretch(self.rate, self.dt) for _ in range(self.steps)])
 

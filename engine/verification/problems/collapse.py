@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 
 from engine.constants import G_NEWTON
-from engine.scene.bodies import Body
+from engine.scene.bodies import Sphere
 from engine.scene.scene import Gravity, Numerics, Physics, Scene
 from engine.verification.check import Check, share
 from engine.verification.harness import begin, fitted_order, follow
@@ -31,7 +31,7 @@ class Fall:
     @property
     def scene(self) -> Scene:
         """The sphere in cells of one particle, under its own gravity only."""
-        body = Body(
+        body = Sphere(
             radius=50e3, particles=self.particles, material=elastic(2700.0, SOFT, SOFT), damage=1.0, hydrostatic=False
         )
         gravity = Gravity(softening=0.3, interval=1.0, opening=0.3)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.scene.bodies import Body
+from engine.scene.bodies import Sphere
 from engine.scene.scene import Physics, Scene
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, difference
@@ -27,7 +27,7 @@ class Expansion:
     @property
     def scene(self) -> Scene:
         """Broken rock without gravity, until its size has doubled."""
-        body = Body(radius=50e3, particles=self.particles, damage=1.0, hydrostatic=False)
+        body = Sphere(radius=50e3, particles=self.particles, damage=1.0, hydrostatic=False)
         return Scene(bodies=(body,), end_time=1.0 / self.rate, physics=Physics(fracture=None, gravity=None))
 
     def checks(self) -> list[Check]:

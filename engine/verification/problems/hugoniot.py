@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from engine.scene.bodies import Box
 from engine.scene.material import Material
-from engine.scene.scene import Numerics, Physics, Scene, Viscosity
+from engine.scene.scene import Numerics, Physics, Scene, ViscosityCoefficients
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check, share
 from engine.verification.harness import Array, Moment, begin, follow
@@ -79,7 +79,7 @@ class Impact:
             lattice=(4 * self.cells, 4, 4),
             position=(0.0, 0.5 * across, 0.5 * across),
         )
-        shock = Viscosity(shock_linear=0.5, shock_quadratic=1.5)
+        shock = ViscosityCoefficients(shock_linear=0.5, shock_quadratic=1.5)
         return Scene(
             bodies=(body,),
             period=(None, across, across),

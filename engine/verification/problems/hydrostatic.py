@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.constants import G_NEWTON
-from engine.scene.bodies import Body
+from engine.scene.bodies import Sphere
 from engine.scene.scene import Physics, Scene
 from engine.verification.check import Check, difference
 from engine.verification.harness import Array, begin, follow
@@ -29,9 +29,9 @@ class Hydrostatic:
     sound_speed: float = 1.0
 
     @property
-    def body(self) -> Body:
+    def body(self) -> Sphere:
         """The sphere."""
-        return Body(radius=50e3, particles=self.particles)
+        return Sphere(radius=50e3, particles=self.particles)
 
     def pressure(self, r: Array) -> Array:
         """P(r) = (2/3) pi G rho^2 (R^2 - r^2) [Pa] at distances r [m] from the centre."""

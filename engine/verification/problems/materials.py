@@ -1,6 +1,6 @@
 """Materials of verification problems: simple limits of Tillotson's rock."""
 
-from engine.scene.material import Material, Tillotson
+from engine.scene.material import Material, TillotsonParameters
 
 NEGLIGIBLE = 1e-12
 """Grueneisen constants so small that heat makes no pressure."""
@@ -27,5 +27,5 @@ def elastic(rho0: float, bulk: float, shear: float, friction: float = 0.0) -> Ma
         bulk, shear: moduli [Pa].
         friction: coefficient mu_d once damaged [-].
     """
-    cold = Tillotson(a=NEGLIGIBLE, b=NEGLIGIBLE, A=bulk, B=0.0)
+    cold = TillotsonParameters(a=NEGLIGIBLE, b=NEGLIGIBLE, A=bulk, B=0.0)
     return Material(rho0=rho0, tillotson=cold, shear_modulus=shear, damaged_friction=friction)

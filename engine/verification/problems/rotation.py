@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.scene.bodies import Body
+from engine.scene.bodies import Sphere
 from engine.scene.scene import Physics, Scene
 from engine.simulation.conservation import Totals
 from engine.verification.check import Check, share
@@ -30,7 +30,7 @@ class Rotation:
     def scene(self) -> Scene:
         """One turn without gravity."""
         spin = (self.rate / 3.0, 2.0 * self.rate / 3.0, 2.0 * self.rate / 3.0)
-        body = Body(radius=50e3, particles=self.particles, spin=spin, hydrostatic=False)
+        body = Sphere(radius=50e3, particles=self.particles, spin=spin, hydrostatic=False)
         physics = Physics(strength=False, fracture=None, gravity=None)
         return Scene(bodies=(body,), end_time=2.0 * np.pi / self.rate, physics=physics)
 

@@ -13,8 +13,8 @@ from engine.laws.shear import Hencky
 from engine.laws.strength import Strength
 from engine.laws.tillotson import Tillotson
 from engine.laws.viscosity import Inviscid
-from engine.scene import material as materials
-from engine.scene.bodies import Body
+from engine.scene.bodies import Sphere
+from engine.scene.material import FractureRules
 from engine.state.particles import Particles
 
 
@@ -28,7 +28,7 @@ class Specimen:
         flaws: flaws of the particles.
     """
 
-    def __init__(self, body: Body, rule: materials.Fracture, flaws: Flaws) -> None:
+    def __init__(self, body: Sphere, rule: FractureRules, flaws: Flaws) -> None:
         self.particles = Particles(body.count)
         rock = [body.material]
         self.constitution = Constitution(

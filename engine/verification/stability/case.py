@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.scene.bodies import Body
+from engine.scene.bodies import Sphere
 from engine.scene.collision import Collision
 from engine.scene.material import Material
 from engine.scene.scene import Physics, Scene
@@ -65,7 +65,7 @@ def alone(
     end_time: float = 500.0, particles: int = PARTICLES, physics: Physics | None = None, **settings: Any
 ) -> Scene:
     """One body of R = 50 km by itself, unstressed; settings are its own."""
-    body = Body.model_validate({"radius": 50e3, "particles": particles, "hydrostatic": False, **settings})
+    body = Sphere.model_validate({"radius": 50e3, "particles": particles, "hydrostatic": False, **settings})
     return with_rows(Scene(bodies=(body,), end_time=end_time, physics=physics or Physics()))
 
 

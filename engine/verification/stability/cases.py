@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from engine.scene.bodies import Body
-from engine.scene.scene import Gravity, Physics, Scene, Viscosity
+from engine.scene.bodies import Sphere
+from engine.scene.scene import Gravity, Physics, Scene, ViscosityCoefficients
 from engine.verification.harness import altered
 from engine.verification.problems.materials import elastic
 from engine.verification.stability import states
@@ -22,7 +22,7 @@ from engine.verification.stability.case import (
 RUBBLE = Physics(fracture=None)
 FREE = Physics(gravity=None)
 LOOSE = Physics(fracture=None, gravity=None)
-SHOCK = Viscosity(shock_linear=0.5, shock_quadratic=1.5)
+SHOCK = ViscosityCoefficients(shock_linear=0.5, shock_quadratic=1.5)
 FLUID = Physics(shear=False, strength=False, fracture=None, gravity=None)
 
 
@@ -34,7 +34,7 @@ def broken(scene: Scene) -> Scene:
 
 def pair(velocity: tuple[float, float, float]) -> Scene:
     """Two bodies of one particle; the second moves [m/s]."""
-    one = Body(radius=50e3, particles=1, hydrostatic=False)
+    one = Sphere(radius=50e3, particles=1, hydrostatic=False)
     return with_rows(Scene(bodies=(one, one.model_copy(update={"velocity": velocity})), end_time=500.0, physics=LOOSE))
 
 
@@ -137,7 +137,7 @@ def _few_and_odd() -> list[Case]:
         Case("parts", "without energy", impact().model_copy(update={"physics": Physics(energy=False)})),
         Case("parts", "fluid", impact().model_copy(update={"physics": FLUID})),
         Case("parts", "set talk", impact(parameter_set="talk")),
-        Case("parts", "viscosity 3e5 m2/s", impact(viscosity=Viscosity(shear=3e5))),
+        Case("parts", "viscosity 3e5 m2/s", impact(viscosity=ViscosityCoefficients(shear=3e5))),
         Case("parts", "shock viscosity, 5 km/s", impact(5e3, viscosity=SHOCK)),
         Case("parts", "sound speed x 0.1, 10 m/s", impact(10.0, sound_speed=0.1)),
     ]

@@ -7,7 +7,7 @@ import pytest
 
 from engine.constants import G_NEWTON
 from engine.device import backend
-from engine.scene.bodies import Body
+from engine.scene.bodies import Sphere
 from engine.scene.scene import Gravity, Numerics, Physics, Scene
 from engine.simulation.simulation import Simulation
 from engine.verification.problems.materials import elastic
@@ -16,7 +16,7 @@ from tests.helpers.device import Array
 AXIS, ECCENTRICITY, TURNS = 1e6, 0.2, 20
 SOFT = elastic(2700.0, 1e-9, 1e-9)
 """No wave in it limits the time step."""
-STAR = Body(radius=50e3, particles=1, hydrostatic=False, material=SOFT)
+STAR = Sphere(radius=50e3, particles=1, hydrostatic=False, material=SOFT)
 MU = 2.0 * G_NEWTON * STAR.mass
 PERIOD = 2.0 * np.pi * np.sqrt(AXIS**3 / MU)
 STEPS = 4

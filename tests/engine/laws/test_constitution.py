@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from engine.laws.viscosity import Viscosity
-from engine.scene import scene
+from engine.scene.scene import ViscosityCoefficients
 from tests.helpers.device import Array, norm, rotations, traceless, worst
 from tests.helpers.material_point import Points, unpacked
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, log_strain, strength_limit, tillotson
@@ -125,7 +125,7 @@ def test_only_pressure_in_tension_falls_with_damage():
 
 def test_energy_grows_by_the_work_of_the_mean_of_all_stress():
     generator = np.random.default_rng(5)
-    points = Points(2000, strength=True, viscosity=Viscosity(scene.Viscosity(shear=1e5, bulk=1e5), 1e3))
+    points = Points(2000, strength=True, viscosity=Viscosity(ViscosityCoefficients(shear=1e5, bulk=1e5), 1e3))
     for _ in range(3):
         L, dt = 0.01 * generator.uniform(-1.0, 1.0, (2000, 3, 3)), 0.7
         E, tau = points["E"], unpacked(points["tau"])

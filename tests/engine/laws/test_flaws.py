@@ -4,16 +4,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.laws.flaws import Flaws, draw_flaws, join
-from engine.scene.material import PARAMETER_SETS, Fracture, Material
-from engine.scene.scene import Body, Scene
+from engine.scene.material import PARAMETER_SETS, FractureRules, Material
+from engine.scene.scene import Scene, Sphere
 from engine.simulation.initial_conditions import all_flaws
 
 COVERED, LISTED = PARAMETER_SETS["sugiura2018"].fracture, PARAMETER_SETS["talk"].fracture
 RULES = pytest.mark.parametrize("rule", [COVERED, LISTED], ids=["covered", "2NlnN"])
 
 
-def draw(particles: int, rule: Fracture, seed: int = 1, **material: float) -> Flaws:
-    body = Body(radius=50e3, particles=particles, material=Material.model_validate(material))
+def draw(particles: int, rule: FractureRules, seed: int = 1, **material: float) -> Flaws:
+    body = Sphere(radius=50e3, particles=particles, material=Material.model_validate(material))
     return draw_flaws(body, rule, np.random.default_rng(seed))
 
 
@@ -103,7 +103,7 @@ def test_joined_flaws_keep_each_bodys_particles_apart():
 
 
 def test_bodies_of_one_scene_draw_different_flaws():
-    body = Body(radius=1e3, particles=50)
+    body = Sphere(radius=1e3, particles=50)
     flaws = all_flaws(Scene(bodies=(body, body), end_time=1.0))
     counts = np.diff(flaws.first)
     assert not np.array_equal(counts[:50], counts[50:])

@@ -4,13 +4,13 @@ import pytest
 from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture, Unbreakable
 from engine.scene.material import PARAMETER_SETS
-from engine.scene.scene import Body
+from engine.scene.scene import Sphere
 from tests.helpers.device import Array, compose, evaluate, rotations, worst
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
-BODY = Body(radius=50e3, particles=500)
+BODY = Sphere(radius=50e3, particles=500)
 CRACK_TIME = 3.0 * BODY.spacing / np.sqrt(LONGITUDINAL / RHO0)
 """Time [s] that a longitudinal wave needs for R_s."""
 
@@ -25,7 +25,7 @@ def drawn(name: str, seed: int = 1) -> Flaws:
 
 
 def grow(name: str, flaws: Flaws, root: Array, stress: Array, P: Array, dt: Array, p: Array) -> Array:
-    law = Fracture([Body(radius=1.0, particles=3), BODY], PARAMETER_SETS[name].fracture, flaws)
+    law = Fracture([Sphere(radius=1.0, particles=3), BODY], PARAMETER_SETS[name].fracture, flaws)
     return evaluate(law.grow, root, stress, P, dt, p, np.ones(len(root), dtype=np.int32))[0]
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from engine.laws.strength import Strength, Unlimited, retained
+from engine.laws.strength import Strength, Unlimited, return_factor
 from engine.scene.material import PARAMETER_SETS, Material
 from tests.helpers.device import Array, evaluate, worst
 from tests.helpers.oracle import U_MELT, strength_limit
@@ -79,7 +79,7 @@ def test_retained_is_exactly_one_up_to_the_limit_and_their_ratio_beyond(name):
     Y = engine_limit(name, P, u, D)
     root_J2 = Y * np.random.default_rng(2).choice([0.0, 0.5, 1.0, 1.0 + 1e-12, 2.0, 1e6], len(Y))
     root_J2[Y == 0.0] = np.resize([0.0, 1e-6, 1e9], (Y == 0.0).sum())
-    (found,) = evaluate(retained, root_J2, Y)
+    (found,) = evaluate(return_factor, root_J2, Y)
     elastic = root_J2 <= Y
     assert elastic.sum() > 1000 and (~elastic).sum() > 1000
     assert np.array_equal(found[elastic], np.ones(elastic.sum()))
@@ -89,5 +89,5 @@ def test_retained_is_exactly_one_up_to_the_limit_and_their_ratio_beyond(name):
 def test_an_unlimited_solid_keeps_all_strain():
     P, u, D = states(100)
     (Y,) = evaluate(Unlimited().limit, P, u, D, np.zeros(100, dtype=np.int32))
-    (found,) = evaluate(retained, np.full(100, 1e20), Y)
+    (found,) = evaluate(return_factor, np.full(100, 1e20), Y)
     assert np.array_equal(found, np.ones(100))

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from engine.laws.viscosity import Inviscid, Viscosity
-from engine.scene import scene
+from engine.scene.scene import ViscosityCoefficients
 from tests.helpers.device import Array, evaluate, norm, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -19,7 +19,7 @@ def states(count: int = 4000) -> tuple[Array, Array, Array]:
 
 
 def viscous(d: Array, rho: Array, c: Array, **coefficients: float) -> list[Array]:
-    law = Viscosity(scene.Viscosity.model_validate(coefficients), DX)
+    law = Viscosity(ViscosityCoefficients.model_validate(coefficients), DX)
     return evaluate(law.stress, d, rho, c, outputs=((3, 3), ()))
 
 

@@ -15,7 +15,7 @@ from engine.laws.tillotson import ColdTillotson
 from engine.profile.parts import allocated_bytes, parts_of
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
-from engine.state.particles import ALWAYS, KINDS, Particles
+from engine.state.particles import CORE_FIELDS, FIELD_TYPES, Particles
 from engine.verification.problems.column import StandingWave
 from tests.helpers.device import evaluate, worst
 from tests.helpers.oracle import RHO0, K
@@ -62,7 +62,7 @@ def code(given: Scene, monkeypatch: pytest.MonkeyPatch) -> tuple[Simulation, set
 
 def held(simulation: Simulation) -> set[str]:
     """Particle quantities that have a field, less those that always do."""
-    return set(simulation.particles.held) - set(ALWAYS)
+    return set(simulation.particles.allocated) - set(CORE_FIELDS)
 
 
 def field_names(simulation: Simulation) -> set[str]:
@@ -175,14 +175,14 @@ def test_uniform_gravity_needs_no_field_of_particles():
 @pytest.mark.usefixtures("taichi")
 def test_a_quantity_that_no_part_holds_is_zero_and_stays_so():
     particles = Particles(3)
-    assert set(particles.held) == set(ALWAYS)
+    assert set(particles.allocated) == set(CORE_FIELDS)
     zeros = particles.read()
-    assert list(zeros) == list(KINDS)
+    assert list(zeros) == list(FIELD_TYPES)
     assert zeros["B"].shape == (3, 6) and zeros["acceleration"].shape == (3, 3) and zeros["E"].shape == (3,)
     particles.write({"E": np.zeros(3)})
     with pytest.raises(ValueError, match="'E'"):
         particles.write({"E": np.ones(3)})
-    particles.hold("E")
+    particles.require("E")
     particles.write({"E": np.ones(3)})
     assert particles.read("E")["E"].all()
 

@@ -7,8 +7,8 @@ from scipy.integrate import solve_ivp
 from engine.errors import SceneError
 from engine.scene.collision import Collision
 from engine.scene.fields import validate
-from engine.scene.material import PARAMETER_SETS, Fracture
-from engine.scene.scene import Body, Scene
+from engine.scene.material import PARAMETER_SETS, FractureRules
+from engine.scene.scene import Scene, Sphere
 
 G_N = 6.6743e-11
 SETTINGS = {
@@ -29,7 +29,7 @@ def relative(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def weighted(bodies: tuple[Body, ...], vectors: list[tuple[float, ...]]) -> np.ndarray:
+def weighted(bodies: tuple[Sphere, ...], vectors: list[tuple[float, ...]]) -> np.ndarray:
     return np.array(sum(body.mass * np.array(vector) for body, vector in zip(bodies, vectors, strict=True)))
 
 
@@ -104,7 +104,7 @@ def test_a_rule_of_fracture_leaves_the_others_of_the_set(name):
     collision = Collision.model_validate(given)
     rules = PARAMETER_SETS[name].fracture.model_copy(update={"growth_range": 2.0})
     assert collision.scene().physics.fracture == rules
-    assert Collision.model_validate(given | {"fracture": Fracture(growth_range=2.0)}) == collision
+    assert Collision.model_validate(given | {"fracture": FractureRules(growth_range=2.0)}) == collision
     assert Collision.model_validate_json(collision.canonical()) == collision
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from engine.errors import SceneError
 from engine.scene.fields import validate
-from engine.scene.scene import Body, Scene, read_scene, scene_in
+from engine.scene.scene import Scene, Sphere, read_scene, scene_in
 from engine.simulation.initial_conditions import initial_state
 
 BODY: dict[str, Any] = {"radius": 50e3, "particles": 1000}
@@ -166,7 +166,7 @@ def test_scenes_are_frozen():
 
 
 def test_spacing_is_that_of_the_coarsest_body():
-    coarse, fine = Body(radius=1e3, particles=10), Body(radius=1e3, particles=1000)
+    coarse, fine = Sphere(radius=1e3, particles=10), Sphere(radius=1e3, particles=1000)
     two = Scene(bodies=(fine, coarse), end_time=1.0)
     assert two.spacing == pytest.approx((4.0 / 3.0 * np.pi * 1e9 / 10) ** (1 / 3))
     assert scene(numerics={"particles_per_cell": 8.0}).dx == pytest.approx(2.0 * scene().spacing)
@@ -183,7 +183,7 @@ def test_without_self_gravity_a_body_starts_without_pressure(pull: tuple[float, 
 
 def test_a_spinning_body_starts_as_a_rigid_rotation_in_hydrostatic_balance():
     spin, velocity = np.array([1e-4, -2e-4, 3e-4]), np.array([5.0, 0.0, -1.0])
-    body = Body(radius=50e3, particles=2000, spin=tuple(spin), velocity=tuple(velocity), position=(1e6, 0.0, 0.0))
+    body = Sphere(radius=50e3, particles=2000, spin=tuple(spin), velocity=tuple(velocity), position=(1e6, 0.0, 0.0))
     state = initial_state(Scene(bodies=(body,), end_time=1.0))
     x = state["x"] - [1e6, 0.0, 0.0]
     np.testing.assert_allclose(state["v"], velocity + np.cross(spin, x), rtol=0, atol=1e-12)

@@ -5,7 +5,7 @@ import pytest
 
 from engine.scene.collision import Collision
 from engine.scene.material import Material
-from engine.scene.scene import Body, Physics, Scene
+from engine.scene.scene import Physics, Scene, Sphere
 from engine.simulation.initial_conditions import initial_state
 from engine.simulation.simulation import Simulation
 from engine.verification.problems.column import StandingWave
@@ -40,7 +40,7 @@ def test_a_body_is_still_in_hydrostatic_balance():
 @pytest.mark.usefixtures("taichi")
 @pytest.mark.parametrize("factor", [1.0, 0.1])
 def test_the_equation_of_state_agrees_with_the_initial_pressure(factor):
-    scene = Scene(bodies=(Body(radius=50e3, particles=100),), end_time=1.0, physics=Physics(sound_speed=factor))
+    scene = Scene(bodies=(Sphere(radius=50e3, particles=100),), end_time=1.0, physics=Physics(sound_speed=factor))
     state = initial_state(scene)
     law = Simulation(scene).constitution.pressure
     mu = -state["j"] / (1.0 + state["j"])
@@ -53,7 +53,7 @@ def test_the_equation_of_state_agrees_with_the_initial_pressure(factor):
 @pytest.mark.usefixtures("taichi")
 def test_flaws_open_at_the_same_tension():
     def grown(factor):
-        scene = Scene(bodies=(Body(radius=50e3, particles=100),), end_time=1.0, physics=Physics(sound_speed=factor))
+        scene = Scene(bodies=(Sphere(radius=50e3, particles=100),), end_time=1.0, physics=Physics(sound_speed=factor))
         law = Simulation(scene).constitution.damage.fracture
         tension = -np.linspace(0.0, 1e6, 100)
         p, nothing = np.arange(100, dtype=np.int32), np.zeros(100)

@@ -6,14 +6,14 @@ import pytest
 from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture
 from engine.scene.material import PARAMETER_SETS
-from engine.scene.scene import Body
+from engine.scene.scene import Sphere
 from tests.helpers.device import Array, worst
 from tests.helpers.material_point import Points
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
-BODY = Body(radius=1.0, particles=200)
+BODY = Sphere(radius=1.0, particles=200)
 STEPS = 600
 FRICTION = {"sugiura2018": 0.839, "talk": 0.945}
 MODULUS = {"sugiura2018": LONGITUDINAL, "talk": 9.0 * K * G / (3.0 * K + G)}
