@@ -7,11 +7,11 @@ from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
 from campaigns.job_names import belongs_to
 from engine.errors import JobError
-from engine.job.directory import STATES, JobDirectory, Status
+from engine.job.directory import WRITTEN, JobDirectory, Status
 
 CORRUPT = "corrupt"
 """State of a job whose directory contradicts itself."""
-ALL_STATES = (*STATES, CORRUPT)
+ALL_STATES = (*WRITTEN, CORRUPT)
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,14 @@
 import logging
 import os
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from engine.device.precision import choose
-from engine.errors import JobBusyError, JobError, RunFault, SceneError, in_words
+from engine.device.options import Arch, choose
+from engine.errors import ExitCode, JobBusyError, JobError, RunFault, SceneError, in_words
 from engine.job.directory import JobDirectory, Status
 from engine.scene.input_errors import suggestion
 
@@ -22,18 +21,8 @@ application = typer.Typer(
     help="One simulation: a scene in, a job directory out.",
 )
 
-DONE, FAILED, BAD_INPUT, BUSY, INTERRUPTED = 0, 1, 2, 3, 130
-"""Exit codes."""
-
 TABLE_WIDTH = 130
 """Characters that a table of results needs, also where its output is not a terminal."""
-
-
-class Arch(StrEnum):
-    """Devices the engine runs on."""
-
-    CPU = "cpu"
-    CUDA = "cuda"
 
 
 @application.command()
@@ -50,13 +39,16 @@ def run(
     try:
         status = _run(directory, threads, arch, checkpoint_interval)
     except JobBusyError as error:
-        _exit(str(error), BUSY)
+        _exit(str(error), ExitCode.BUSY)
     except (SceneError, JobError) as error:
-        _exit(str(error), BAD_INPUT)
+        _exit(str(error), ExitCode.BAD_INPUT)
     except OSError as error:
-        _exit(f"{in_words(error, directory)}; the last checkpoint is intact, run again to resume", FAILED)
+        _exit(f"{in_words(error, directory)}; the last checkpoint is intact, run again to resume", ExitCode.FAILED)
     if status.state != "done":
-        _exit(f"{directory}: {status.state}: {status.reason}", FAILED if status.state == "failed" else INTERRUPTED)
+        _exit(
+            f"{directory}: {status.state}: {status.reason}",
+            ExitCode.FAILED if status.state == "failed" else ExitCode.INTERRUPTED,
+        )
     typer.echo(f"{directory}: done after {status.step} steps")
 
 
@@ -81,9 +73,9 @@ def explain(
         with Console(stderr=True).status(f"measuring {steps} steps"):
             result = measure(scene, steps, arch.value, threads)
     except (SceneError, JobError) as error:
-        _exit(str(error), BAD_INPUT)
+        _exit(str(error), ExitCode.BAD_INPUT)
     except RunFault as fault:
-        _exit(f"{scene}: {fault}", FAILED)
+        _exit(f"{scene}: {fault}", ExitCode.FAILED)
     Console(width=max(Console().width, TABLE_WIDTH)).print(report(result))
 
 
@@ -107,7 +99,7 @@ def verify(
 
     known = FULL if full else SHORT
     for name in set(names or ()) - set(known):
-        _exit(f"unknown problem '{name}'{suggestion(name, list(known), 'problems')}", BAD_INPUT)
+        _exit(f"unknown problem '{name}'{suggestion(name, list(known), 'problems')}", ExitCode.BAD_INPUT)
     chosen = [known[name] for name in names or known]
     with Console(stderr=True).status("running") as spinner:
         results = []
@@ -119,7 +111,7 @@ def verify(
         if figures:
             draw(chosen, figures)
     Console(width=max(Console().width, TABLE_WIDTH)).print(table(results))
-    raise typer.Exit(DONE if all(result.passed for result in results) else FAILED)
+    raise typer.Exit(ExitCode.DONE if all(result.passed for result in results) else ExitCode.FAILED)
 
 
 @application.command()
@@ -135,7 +127,7 @@ def accuracy(
     from engine.verification.accuracy.sweep import orders, read, sweep
 
     for name in set(names or ()) - set(TRADEOFFS):
-        _exit(f"unknown scene '{name}'{suggestion(name, list(TRADEOFFS), 'scenes')}", BAD_INPUT)
+        _exit(f"unknown scene '{name}'{suggestion(name, list(TRADEOFFS), 'scenes')}", ExitCode.BAD_INPUT)
     directory.mkdir(parents=True, exist_ok=True)
     for run in sweep(names or TRADEOFFS, directory / "scenes.nc", workers):
         typer.echo(f"{run.scene:12} {run.knob:28} {run.value:>8}  error {run.error:9.3g}  {run.cpu_time:8.2f} s")
@@ -155,7 +147,7 @@ def stability(
     """
     choose("f64")
     if directory.exists():
-        _exit(f"{directory}: exists already; name a new directory", BAD_INPUT)
+        _exit(f"{directory}: exists already; name a new directory", ExitCode.BAD_INPUT)
     from engine.verification.stability.matrix import find_limits, run_all
     from engine.verification.stability.results import dataset, summary, write
 
@@ -167,7 +159,7 @@ def stability(
     write(directory, results)
     typer.echo(summary(results).to_string(float_format="%.2g"))
     typer.echo(results[["limit", "limit_theory"]].to_dataframe().to_string(float_format="%.3f"))
-    raise typer.Exit(DONE if all(outcome.acceptable for outcome in outcomes) else FAILED)
+    raise typer.Exit(ExitCode.DONE if all(outcome.acceptable for outcome in outcomes) else ExitCode.FAILED)
 
 
 def _run(directory: Path, threads: int, arch: Arch, checkpoint_interval: float) -> Status:

@@ -2,6 +2,18 @@
 
 import math
 from dataclasses import dataclass
+from enum import IntEnum
+
+
+class ExitCode(IntEnum):
+    """How a process of the engine ended."""
+
+    DONE = 0
+    FAILED = 1
+    BAD_INPUT = 2
+    BUSY = 3
+    INTERRUPTED = 130
+
 
 SMALLER_STEPS = "try a smaller numerics.cfl"
 """Advice where an unstable time step may be the cause."""

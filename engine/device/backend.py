@@ -16,7 +16,7 @@ import taichi as ti
 from taichi.lang import impl
 from taichi.lang.util import to_numpy_type
 
-from engine.device.precision import VARIABLE, chosen
+from engine.device.options import VARIABLE, chosen
 from engine.device.source_positions import word_places_once
 from engine.errors import SceneError
 

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
+from enum import StrEnum
 from pathlib import Path
 
 import psutil
@@ -15,7 +16,21 @@ from pydantic import TypeAdapter, ValidationError
 from engine.errors import Fault, JobBusyError, JobError
 from engine.job.storage import remove_partial_files, write_json
 
-STATES = ("pending", "running", "interrupted", "done", "failed")
+
+class JobState(StrEnum):
+    """How a job stands; `corrupt` and `missing` are seen by readers of a campaign only, in the order people look for."""
+
+    PENDING = "pending"
+    RUNNING = "running"
+    INTERRUPTED = "interrupted"
+    DONE = "done"
+    FAILED = "failed"
+    CORRUPT = "corrupt"
+    MISSING = "missing"
+
+
+WRITTEN = (JobState.PENDING, JobState.RUNNING, JobState.INTERRUPTED, JobState.DONE, JobState.FAILED)
+"""States that status.json may hold."""
 HEARTBEAT_PERIOD = 2.0
 """Time [s] between two writes of status.json by a run."""
 HEARTBEAT_LIMIT = 120.0
@@ -132,7 +147,7 @@ class JobDirectory:
             raise JobError(f"{self.status_file}: damaged: {key}{issue['msg']}") from error
         except OSError as error:
             raise JobError(f"{self.status_file}: damaged: {error}") from error
-        if status.state not in STATES:
+        if status.state not in WRITTEN:
             raise JobError(f"{self.status_file}: damaged: unknown state '{status.state}'")
         if status.state == "running" and not _is_alive(status):
             return replace(status, state="interrupted")

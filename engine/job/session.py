@@ -178,7 +178,7 @@ class Run:
     def _row(self) -> Row:
         """The row of the history for the present moment."""
         simulation = self.simulation
-        state = simulation.particles.read("v", "j", "root")
+        state = simulation.particles.read("v", "j", "damage_root")
         return as_row(
             simulation.totals(),
             time=simulation.time,
@@ -189,7 +189,7 @@ class Run:
             gravity_torque=simulation.gravity_torque,
             largest_speed=float(np.linalg.norm(state["v"], axis=1).max()),
             largest_compression=float(1.0 / (1.0 + state["j"].min())),
-            damaged_fraction=float(np.mean(state["root"] ** 3)),
+            damaged_fraction=float(np.mean(state["damage_root"] ** 3)),
             isolated=float(simulation.transfer.alone_count[None]),
         )
 

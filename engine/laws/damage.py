@@ -17,18 +17,18 @@ class Damage:
     """
 
     def __init__(self, particles: Any, fracture: Any) -> None:
-        self.root, self.index, self.fracture = particles.require("root"), particles.index, fracture
+        self.damage_root, self.index, self.fracture = particles.require("damage_root"), particles.index, fracture
 
     @ti.func
     def value(self, p):
         """Damage of particle p [-]."""
-        root = self.root[p]
+        root = self.damage_root[p]
         return root * root * root
 
     @ti.func
     def grow(self, p, s, P, dt, body):
         """Break particle p further, under deviatoric Cauchy stress s [Pa] and pressure P [Pa], for a step dt [s]."""
-        self.root[p] = self.fracture.grow(self.root[p], s, P, dt, self.index[p], body)
+        self.damage_root[p] = self.fracture.grow(self.damage_root[p], s, P, dt, self.index[p], body)
 
 
 @ti.data_oriented

@@ -59,7 +59,7 @@ class Hencky:
     """
 
     def __init__(self, particles: Any, strength: Any, materials: Sequence[Material]) -> None:
-        self.B, self.strength = particles.require("B"), strength
+        self.b_minus_I, self.strength = particles.require("b_minus_I"), strength
         self.table = ti.types.struct(modulus=Real).field(shape=len(materials))
         for i, material in enumerate(materials):
             self.table.modulus[i] = material.shear_modulus
@@ -73,13 +73,13 @@ class Hencky:
         G, Y = self.modulus(body), self.strength.limit(P, E, D, body)
         strain, remaining = mat3(0.0), vec6(0.0)
         if Y > 0.0:
-            remaining = deform(self.B[p], A, growth)
+            remaining = deform(self.b_minus_I[p], A, growth)
             strain = deviator(half_log(unpack(remaining)))
             share = return_factor(2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain)), Y)
             if share < 1.0:
                 strain *= share
                 remaining = pack(exp_minus_identity(2.0 * strain))
-        self.B[p] = remaining
+        self.b_minus_I[p] = remaining
         return 2.0 * G * strain
 
     @ti.func

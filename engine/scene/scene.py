@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from engine.constants import BLOCK_EDGE
-from engine.device.precision import Precision
+from engine.device.options import Precision
 from engine.errors import SceneError
 from engine.scene.bodies import MOST_PARTICLES, Box, Sphere
 from engine.scene.fields import (

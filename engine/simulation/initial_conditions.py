@@ -45,7 +45,7 @@ def _body_state(scene: Scene, index: int) -> Arrays:
         "j": -mu / (1.0 + mu),
         "E": energy,
         "tau": np.outer(-pressure / (1.0 + mu), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
-        "root": np.full(body.count, body.damage ** (1.0 / 3.0)),
+        "damage_root": np.full(body.count, body.damage ** (1.0 / 3.0)),
         "mass": np.full(body.count, body.mass / body.count),
         "body": np.full(body.count, index, dtype=np.int32),
     }

@@ -19,9 +19,9 @@ FIELD_TYPES = {
     "mass": Real,
     "body": ti.i32,
     "origin": ti.types.vector(3, ti.i32),
-    "B": vec6,
+    "b_minus_I": vec6,
     "E": Real,
-    "root": Real,
+    "damage_root": Real,
     "acceleration": vec3,
 }
 """Type of every quantity."""
@@ -35,8 +35,8 @@ class Particles:
 
     x, v: position and velocity; C: affine velocity [1/s]; j = det F - 1; tau: Kirchhoff stress [Pa]; mass; body: index
     of the body; origin: coordinates of the grid block that held the particle when blocks were last built. Parts of the
-    physics hold more: B, left Cauchy-Green tensor of the isochoric elastic strain minus I; E, energy [J/kg]; root, cube
-    root of damage; acceleration, gravity held at present. A quantity that no part holds is zero: it is read as zeros,
+    physics hold more: b_minus_I, left Cauchy-Green tensor of the isochoric elastic strain minus I; E, energy [J/kg];
+    damage_root, cube root of damage; acceleration, gravity held at present. A quantity that no part holds is zero: it is read as zeros,
     and nothing else can be written to it.
 
     On the device particles lie in the order of the last `sort`, so that those of a block are read in one go. `index`

@@ -108,7 +108,7 @@ class Moment:
     @property
     def damage(self) -> Array:
         """Damage [-], shape [particle_count]."""
-        return np.asarray(self.state["root"] ** 3)
+        return np.asarray(self.state["damage_root"] ** 3)
 
 
 def fitted_order(sizes: list[float], errors: list[float]) -> float:

@@ -5,7 +5,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from typing import ParamSpec, TypeVar
 
-from engine.device.precision import Precision, choose
+from engine.device.options import Precision, choose
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")

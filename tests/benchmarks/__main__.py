@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from engine.device.precision import Precision
+from engine.device.options import Precision
 from tests.benchmarks import startup
 from tests.benchmarks.child import ask
 from tests.benchmarks.host import commit, host

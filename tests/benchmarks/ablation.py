@@ -74,7 +74,7 @@ def measure(scene: Scene, time: float, rounds: int) -> Results:
     per_step = {name: 1e3 * np.array(watch.cpu) / BATCH for name, watch in watches.items()}
     per_step = {name: cpu + (0.0 if name == "without gravity" else gravity) for name, cpu in per_step.items()}
     return {
-        "damaged": float((whole.particles.read("root")["root"] >= 1.0).mean()),
+        "damaged": float((whole.particles.read("damage_root")["damage_root"] >= 1.0).mean()),
         "gravity_cpu_ms": gravity,
         "whole": {"cpu_ms": float(np.median(per_step["whole"])), "bytes": memory(whole)},
         **{name: change(per_step, name, simulations[name], whole) for name in VARIANTS},

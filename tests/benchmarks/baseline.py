@@ -47,8 +47,8 @@ def differences(simulation: Simulation, other: DenseTransfer) -> dict[str, float
 
 
 def _outcome(particles: Particles) -> Arrays:
-    state = particles.read("x", "v", "j", "root")
-    return {"x": state["x"], "v": state["v"], "J": 1.0 + state["j"], "damage": state["root"] ** 3}
+    state = particles.read("x", "v", "j", "damage_root")
+    return {"x": state["x"], "v": state["v"], "J": 1.0 + state["j"], "damage": state["damage_root"] ** 3}
 
 
 def step_together(simulation: Simulation, others: Sequence[DenseTransfer], steps: int) -> None:

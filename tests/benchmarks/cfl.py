@@ -49,7 +49,7 @@ class Outcome:
         change = (now.total_energy - start.total_energy) / start.kinetic_energy
         self.growth, self.dissipated = max(self.growth, change), -change
         self.kinetic = now.kinetic_energy / start.kinetic_energy
-        self.damage = float((simulation.particles.read("root")["root"] ** 3).mean())
+        self.damage = float((simulation.particles.read("damage_root")["damage_root"] ** 3).mean())
 
 
 def scene(velocity: float, cfl: float) -> Scene:

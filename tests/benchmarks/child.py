@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from engine.device.precision import VARIABLE, Precision
+from engine.device.options import VARIABLE, Precision
 
 ROOT = Path(__file__).parents[2]
 

@@ -33,7 +33,7 @@ class LogStrain:
         self.F, self.B = mat3.field(shape=COUNT), vec6.field(shape=COUNT)
         self.result = mat3.field(shape=COUNT)
         overwrite(self.F, deformation_gradient(state))
-        overwrite(self.B, state["B"])
+        overwrite(self.B, state["b_minus_I"])
 
     @ti.kernel
     def by_svd(self):
@@ -75,7 +75,7 @@ def strains(size: float) -> tuple[np.ndarray, Arrays]:
     logs *= size / np.linalg.norm(logs, axis=1, keepdims=True)
     axes, _ = np.linalg.qr(generator.normal(size=(COUNT, 3, 3)))
     strain, B = (np.einsum("nik,nk,njk->nij", axes, values, axes) for values in (logs, np.expm1(2.0 * logs)))
-    return strain, {"B": B[:, [0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]], "j": np.zeros(COUNT)}
+    return strain, {"b_minus_I": B[:, [0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]], "j": np.zeros(COUNT)}
 
 
 def rows() -> Iterator[tuple[str, ...]]:

@@ -6,8 +6,8 @@ from engine.simulation.simulation import Simulation
 
 PARTICLES_TO_GRID = ("x", "v", "C", "tau", "acceleration", "mass", "body")
 """Particle fields read."""
-GRID_TO_PARTICLES = ("x", "origin", "mass", "body", "acceleration", "B", "j", "E", "root", "tau")
-UPDATED = ("x", "v", "C", "B", "j", "E", "root", "tau")
+GRID_TO_PARTICLES = ("x", "origin", "mass", "body", "acceleration", "b_minus_I", "j", "E", "damage_root", "tau")
+UPDATED = ("x", "v", "C", "b_minus_I", "j", "E", "damage_root", "tau")
 """Particle fields written."""
 GRID_PASSES = 4
 """Times that every node copy crosses the caches: filled, summed, written back, read; clearing stays in cache."""

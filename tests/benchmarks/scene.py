@@ -1,6 +1,6 @@
 """The scene that is timed: a collision of two bodies, from shortly before contact."""
 
-from engine.device.precision import chosen
+from engine.device.options import chosen
 from engine.scene.collision import Collision
 from engine.scene.scene import Gravity, Numerics, Scene
 

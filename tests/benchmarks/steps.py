@@ -28,7 +28,7 @@ def measure(particles: int, threads: int, contact: float, steps: int) -> dict[st
         "time": simulation.time,
         "dt": float(simulation.clock.dt[None]),
         "blocks": int(simulation.transfer.block_count[None]),
-        "damaged": float((simulation.particles.read("root")["root"] >= 1.0).mean()),
+        "damaged": float((simulation.particles.read("damage_root")["damage_root"] >= 1.0).mean()),
         "steps": steps,
         "step": total(watches).summary(),
         "phases": {name: watch.summary() for name, watch in zip(PHASES, watches, strict=True)},

@@ -26,7 +26,7 @@ class StretchConstitution(Constitution):
     def __init__(self, *parts: Any) -> None:
         super().__init__(*parts)
         self.F = mat3.field(shape=self.particles.x.shape)
-        overwrite(self.F, deformation_gradient(self.particles.read("B", "j")))
+        overwrite(self.F, deformation_gradient(self.particles.read("b_minus_I", "j")))
 
     def volume_ratio(self) -> NDArray[np.float64]:
         """det F of every particle."""
@@ -49,7 +49,7 @@ class StretchConstitution(Constitution):
         tau = s - J * P * identity()
         self.F[p], self.particles.j[p], self.particles.tau[p] = F, J - 1.0, pack(tau)
         self.energy.add(p, half_work + 0.5 / m.rho0 * ddot(tau, strain))
-        self.damage.root[p] = self.grow(largest / J - P, dt, p)
+        self.damage.damage_root[p] = self.grow(largest / J - P, dt, p)
         return self.wave_speed(c2, body), 0.0
 
     @ti.func
@@ -72,7 +72,7 @@ class StretchConstitution(Constitution):
     @ti.func
     def grow(self, tension, dt, p):
         """Cube root of damage after a step under a largest principal stress [Pa]."""
-        m, root = self.damage.fracture.table[self.particles.body[p]], self.damage.root[p]
+        m, root = self.damage.fracture.table[self.particles.body[p]], self.damage.damage_root[p]
         first, end = self.damage.fracture.first[p], self.damage.fracture.first[p + 1]
         flaw = first
         while flaw < end and self.damage.fracture.strain[flaw] < tension / m.modulus:
@@ -92,7 +92,7 @@ def diagonal(values):
 
 def deformation_gradient(state: Arrays) -> NDArray[np.float64]:
     """F without rotation for the engine's isochoric strain B and det F - 1, shape [particle_count, 3, 3]."""
-    b = np.eye(3) + state["B"][:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
+    b = np.eye(3) + state["b_minus_I"][:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
     values, vectors = np.linalg.eigh(b)
     stretch = np.sqrt(values)
     stretch *= np.cbrt((1.0 + state["j"]) / stretch.prod(axis=1))[:, None]

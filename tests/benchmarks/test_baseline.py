@@ -34,10 +34,12 @@ def ready() -> Ready:
 
 def test_the_usual_way_gives_the_results_of_the_engine(ready):
     simulation, usual, dense = ready
-    before = simulation.particles.read("root", "B")
+    before = simulation.particles.read("damage_root", "b_minus_I")
     step_together(simulation, [usual, dense], STEPS)
-    after = simulation.particles.read("root", "B")
-    assert (before["root"] != after["root"]).sum() > 100 and (before["B"] != after["B"]).all(axis=1).sum() > 500
+    after = simulation.particles.read("damage_root", "b_minus_I")
+    assert (before["damage_root"] != after["damage_root"]).sum() > 100 and (
+        before["b_minus_I"] != after["b_minus_I"]
+    ).all(axis=1).sum() > 500
     assert max(differences(simulation, usual).values()) < ROUND_OFF_SVD
     assert max(differences(simulation, dense).values()) < ROUND_OFF
 

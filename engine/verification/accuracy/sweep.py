@@ -12,7 +12,7 @@ import xarray as xr
 
 from engine import PHYSICS_VERSION
 from engine.device import backend
-from engine.device.precision import Precision
+from engine.device.options import Precision
 from engine.job.storage import write_dataset
 from engine.verification.accuracy.settings import TRADEOFFS
 from engine.verification.harness import fitted_order, settings

@@ -98,7 +98,7 @@ class Layer:
         wide = np.cosh(strain) - 1.0
         return {
             "j": -mu / (1.0 + mu),
-            "B": np.stack([wide, zero, wide, zero, np.sinh(strain), zero], axis=1),
+            "b_minus_I": np.stack([wide, zero, wide, zero, np.sinh(strain), zero], axis=1),
             "tau": np.stack([-J * P, -J * P, -J * P, zero, J * shear, zero], axis=1),
         }
 

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from engine.__main__ import BAD_INPUT, application
+from engine.__main__ import application
 from engine.device.backend import require_precision
-from engine.device.precision import VARIABLE, chosen
-from engine.errors import SceneError
+from engine.device.options import VARIABLE, chosen
+from engine.errors import ExitCode, SceneError
 from engine.job.storage import read_dataset
 from tests.helpers.jobs import assert_same_results, run_engine, start_and_stop, write_job
 
@@ -91,5 +91,5 @@ def test_commands_without_a_scene_of_their_own_compute_in_double_precision(
     command: list[str], left_behind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(VARIABLE, left_behind)
-    assert CliRunner().invoke(application, command).exit_code == BAD_INPUT
+    assert CliRunner().invoke(application, command).exit_code == ExitCode.BAD_INPUT
     assert chosen() == "f64"

@@ -17,7 +17,7 @@ def strained(count: int, size: float, **parts: bool) -> tuple[Points, Array]:
     generator = np.random.default_rng(1)
     X = size * generator.uniform(-1.0, 1.0, (count, 3, 3)) * generator.choice([1e-3, 0.1, 1.0], (count, 1, 1))
     points = Points(count, **parts)
-    points.particles.write({"root": np.cbrt(generator.choice([0.0, 0.5, 1.0], count))})
+    points.particles.write({"damage_root": np.cbrt(generator.choice([0.0, 0.5, 1.0], count))})
     points.step(X, 1.0)
     return points, X
 
@@ -79,7 +79,7 @@ def test_stress_turns_with_the_particle():
 def test_yielding_reaches_the_strength_exactly_and_keeps_direction_and_volume():
     yielding, _ = strained(4000, 0.1, strength=True)
     free, _ = strained(4000, 0.1)
-    D = yielding["root"] ** 3
+    D = yielding["damage_root"] ** 3
     P = rest_pressure(free["j"])
     Y = strength_limit(P, np.zeros(4000), D, FRICTION)
     sqrt_J2, unlimited = norm(yielding.deviator) / np.sqrt(2.0), norm(free.deviator) / np.sqrt(2.0)
@@ -94,9 +94,9 @@ def test_elastic_points_are_untouched_bit_for_bit():
     yielding, _ = strained(4000, 0.1, strength=True)
     free, _ = strained(4000, 0.1)
     P = rest_pressure(free["j"])
-    elastic = norm(free.deviator) / np.sqrt(2.0) < 0.999 * strength_limit(P, 0.0, free["root"] ** 3, FRICTION)
+    elastic = norm(free.deviator) / np.sqrt(2.0) < 0.999 * strength_limit(P, 0.0, free["damage_root"] ** 3, FRICTION)
     assert elastic.sum() > 100
-    for name in ("B", "tau", "E"):
+    for name in ("b_minus_I", "tau", "E"):
         assert np.array_equal(yielding[name][elastic], free[name][elastic])
         assert not np.array_equal(yielding[name], free[name])
 
@@ -105,16 +105,16 @@ def test_radial_return_is_idempotent():
     points, _ = strained(4000, 0.1, strength=True)
     # energy alone would change pressure, and with it the strength
     points.particles.write({"E": np.zeros(4000)})
-    before = points["B"]
+    before = points["b_minus_I"]
     points.settle()
-    assert worst(points["B"], before, 1.0) < 1e-15
+    assert worst(points["b_minus_I"], before, 1.0) < 1e-15
 
 
 def test_only_pressure_in_tension_falls_with_damage():
     generator = np.random.default_rng(4)
     D = generator.choice([0.0, 1.0, generator.random()], 2000)
     points, X = Points(2000), 1e-2 * generator.uniform(-1.0, 1.0, (2000, 3, 3))
-    points.particles.write({"root": np.cbrt(D)})
+    points.particles.write({"damage_root": np.cbrt(D)})
     points.step(X, 1.0)
     J = np.exp(np.trace(log_strain(X), axis1=1, axis2=2))
     P = rest_pressure(J - 1.0)
@@ -138,7 +138,7 @@ def test_energy_grows_by_the_work_of_the_mean_of_all_stress():
 
 def test_without_shear_there_is_only_pressure():
     points, _ = strained(500, 0.1, shear=False)
-    assert not points["B"].any() and not points["tau"][:, 3:].any()
+    assert not points["b_minus_I"].any() and not points["tau"][:, 3:].any()
     assert np.array_equal(points["tau"][:, 0], points["tau"][:, 1])
 
 

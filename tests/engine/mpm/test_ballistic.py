@@ -19,16 +19,16 @@ def test_a_lonely_particle_flies_straight_with_a_frozen_state(gap):
     generator = np.random.default_rng(3)
     state = {
         "C": 1e-4 * generator.normal(size=(41, 3, 3)),
-        "B": 1e-3 * generator.normal(size=(41, 6)),
+        "b_minus_I": 1e-3 * generator.normal(size=(41, 6)),
         "tau": 1e8 * generator.normal(size=(41, 6)),
         "j": 1e-3 * generator.random(41),
         "E": generator.random(41),
-        "root": np.full(41, 0.5),
+        "damage_root": np.full(41, 0.5),
     }
     state["C"][1:] = state["tau"][1:] = 0.0
     simulation = advance(started(given, **state), 40)
-    found = simulation.particles.read("x", "v", "C", "B", "tau", "j", "E", "root")
-    for name in ("B", "tau", "j", "E", "root"):
+    found = simulation.particles.read("x", "v", "C", "b_minus_I", "tau", "j", "E", "damage_root")
+    for name in ("b_minus_I", "tau", "j", "E", "damage_root"):
         assert np.array_equal(found[name][0], state[name][0])
     assert np.array_equal(found["v"][0], [150.0, 0.0, 80.0])
     np.testing.assert_allclose(found["x"][0], simulation.time * found["v"][0], rtol=1e-13)

@@ -71,9 +71,9 @@ def field_names(simulation: Simulation) -> set[str]:
 
 PARTS = {
     "energy": ("E", ["energy.InternalEnergy", "tillotson.condensed"]),
-    "shear": ("B", ["shear.Hencky", "shear.deform", "tensors.half_log"]),
+    "shear": ("b_minus_I", ["shear.Hencky", "shear.deform", "tensors.half_log"]),
     "strength": (None, ["strength.Strength"]),
-    "fracture": ("root", ["fracture.", "damage.Damage", "tensors.largest_eigenvalue"]),
+    "fracture": ("damage_root", ["fracture.", "damage.Damage", "tensors.largest_eigenvalue"]),
     "gravity": ("acceleration", ["tree.", "gravity.SelfGravity"]),
     "viscosity": (None, ["viscosity.Viscosity"]),
     "walls": (None, ["walls."]),
@@ -111,7 +111,7 @@ def test_each_part_is_there_exactly_when_the_scene_names_it(monkeypatch, left_ou
 @pytest.mark.usefixtures("taichi")
 def test_an_elastic_column_pays_for_elasticity_alone(monkeypatch):
     simulation, names = code(StandingWave(8).scene, monkeypatch)
-    assert held(simulation) == {"B", "E"}
+    assert held(simulation) == {"b_minus_I", "E"}
     owners = {part.name for part in parts_of(simulation) if part.fields}
     assert owners == {"particles", "clock", "transfer", "constitution", "pressure", "energy", "shear"}
     assert not [part for part in PARTS if part not in ("energy", "shear") and runs(part, names)]
@@ -153,7 +153,7 @@ def test_bodies_start_in_balance_on_the_cold_curve():
 @pytest.mark.usefixtures("taichi")
 def test_damage_that_only_stays_is_kept_without_flaws():
     simulation = advance(started(scene(body(damage=0.3))), 2)
-    np.testing.assert_allclose(simulation.particles.read("root")["root"] ** 3, 0.3, rtol=1e-14)
+    np.testing.assert_allclose(simulation.particles.read("damage_root")["damage_root"] ** 3, 0.3, rtol=1e-14)
     assert "fracture.strain" not in field_names(simulation)
 
 
@@ -162,7 +162,7 @@ def test_uniform_gravity_needs_no_field_of_particles():
     g = (1.0, -2.0, 3.0)
     simulation = advance(started(scene(body(), physics={**BARE, "uniform_gravity": g})), 20)
     before = started(scene(body(), physics=BARE)).particles.read("x")["x"]
-    assert held(simulation) == {"root"}
+    assert held(simulation) == {"damage_root"}
     assert allocated_bytes(simulation.gravity.pull) == 24
     state, t = simulation.particles.read("x", "v", "mass"), simulation.time
     np.testing.assert_allclose(state["v"], np.tile(np.multiply(g, t), (100, 1)), rtol=1e-11)
@@ -178,7 +178,7 @@ def test_a_quantity_that_no_part_holds_is_zero_and_stays_so():
     assert set(particles.allocated) == set(CORE_FIELDS)
     zeros = particles.read()
     assert list(zeros) == list(FIELD_TYPES)
-    assert zeros["B"].shape == (3, 6) and zeros["acceleration"].shape == (3, 3) and zeros["E"].shape == (3,)
+    assert zeros["b_minus_I"].shape == (3, 6) and zeros["acceleration"].shape == (3, 3) and zeros["E"].shape == (3,)
     particles.write({"E": np.zeros(3)})
     with pytest.raises(ValueError, match="'E'"):
         particles.write({"E": np.ones(3)})
@@ -198,7 +198,7 @@ def test_a_bare_scene_writes_all_variables_and_resumes_to_the_same_bits(tmp_path
 
     job, first = JobDirectory(tmp_path), advance(started(given), 20)
     save_checkpoint(job, first, {})
-    assert not {"E", "B", "root", "acceleration"} & set(read_dataset(job.checkpoint).data_vars)
+    assert not {"E", "b_minus_I", "damage_root", "acceleration"} & set(read_dataset(job.checkpoint).data_vars)
     second = Simulation(given)
     assert load_checkpoint(job, second) == {}
     for each in (first, second):

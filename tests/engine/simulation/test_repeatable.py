@@ -42,7 +42,7 @@ def reference() -> dict[str, Any]:
 def test_the_reference_collides(reference):
     assert reference["step"] > 100
     assert reference["time"] == WHOLE.end_time
-    assert reference["root"].max() == 1.0
+    assert reference["damage_root"].max() == 1.0
     # at half of the impact speed a body crosses more than two cells in the time of one launch
     step = (WHOLE.end_time - WHOLE.start_time) / reference["step"]
     assert 500.0 * LAUNCHES * step > 2.0 * WHOLE.dx

@@ -32,7 +32,7 @@ def engine_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     for _ in range(STEPS):
         points.step(np.diag([rate, 0.0, 0.0]), dt)
         stress.append(points.stress[:, 0, 0])
-        damage.append(points["root"] ** 3)
+        damage.append(points["damage_root"] ** 3)
     return np.array(stress), np.array(damage)
 
 

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import engine.simulation.guard
 from engine.__main__ import application
-from engine.device.precision import chosen
+from engine.device.options import chosen
 from engine.job.directory import JobDirectory
 from engine.job.storage import read_dataset
 from engine.verification.processes import in_own_process

@@ -1,9 +1,21 @@
-"""Precision of all numbers on the device: one per process, chosen before the device modules are imported."""
+"""What a user chooses of the device, without Taichi: the architecture, and the precision of all numbers.
+
+Precision is one per process, chosen before the device modules are imported.
+"""
 
 import os
+from enum import StrEnum
 from typing import Literal, cast, get_args
 
 from engine.errors import SceneError
+
+
+class Arch(StrEnum):
+    """Devices the engine runs on."""
+
+    CPU = "cpu"
+    CUDA = "cuda"
+
 
 Precision = Literal["f64", "f32"]
 

@@ -1,0 +1,73 @@
+"""Names, meanings and units of what a run writes: the one list for the history, the particles and their readers."""
+
+from typing import NamedTuple
+
+
+class Quantity(NamedTuple):
+    """CF attributes of one variable.
+
+    Attributes:
+        long_name: meaning.
+        units: unit, as CF writes it; empty for texts.
+        comment: how it is measured, if that needs a word.
+        is_vector: whether it has a component along each axis of space.
+    """
+
+    long_name: str
+    units: str
+    comment: str = ""
+    is_vector: bool = False
+
+    def attributes(self) -> dict[str, str]:
+        """As netCDF attributes, leaving out what is empty."""
+        texts = {"long_name": self.long_name, "units": self.units, "comment": self.comment}
+        return {key: text for key, text in texts.items() if text}
+
+
+SPACE = ("x", "y", "z")
+"""Coordinates of the dimension `space` of every vector."""
+
+HISTORY = {
+    "time": Quantity("time after point-mass contact", "s"),
+    "step": Quantity("time steps done", "1"),
+    "dt": Quantity("time step", "s"),
+    "mass": Quantity("total mass", "kg"),
+    "momentum": Quantity("total momentum", "kg m s-1", is_vector=True),
+    "angular_momentum": Quantity(
+        "total angular momentum about the origin, affine part included", "kg m2 s-1", is_vector=True
+    ),
+    "kinetic_energy": Quantity("kinetic energy of the mean motion of particles", "J"),
+    "affine_kinetic_energy": Quantity("kinetic energy of the motion inside particles", "J"),
+    "internal_energy": Quantity("work done by stress, elastic energy included", "J"),
+    "elastic_energy": Quantity("energy stored in elastic strain, a part of internal_energy", "J"),
+    "gravitational_energy": Quantity("gravitational energy", "J"),
+    "half_step_work": Quantity("work in half a step: takes kinetic energy to the time of the other energies", "J"),
+    "total_energy": Quantity(
+        "kinetic, affine, internal and gravitational energy; what is lost is numerical dissipation", "J"
+    ),
+    "gravity_change": Quantity("relative change of gravity over the interval for which it was held", "1"),
+    "gravity_force": Quantity("net force of gravity, which is taken out, over the sum of all forces", "1"),
+    "gravity_torque": Quantity(
+        "net torque of gravity, which is taken out, over the sum of forces times distances", "1"
+    ),
+    "largest_speed": Quantity("highest speed of a particle", "m s-1"),
+    "largest_compression": Quantity("highest rho/rho0 of a particle", "1"),
+    "damaged_fraction": Quantity("mean damage of all particles", "1"),
+    "isolated": Quantity("particles that share no block with another", "1"),
+}
+"""Variables of history.nc."""
+
+CONSERVED = ("mass", "momentum", "angular_momentum", "total_energy")
+"""Those that a closed system keeps; the total energy only where the scheme dissipates nothing."""
+
+PARTICLES = {
+    "position": Quantity("position", "m", is_vector=True),
+    "velocity": Quantity("velocity", "m s-1", is_vector=True),
+    "mass": Quantity("mass", "kg"),
+    "J": Quantity("volume relative to the reference state, det F", "1"),
+    "rho": Quantity("density", "kg m-3"),
+    "damage": Quantity("damage", "1"),
+    "energy": Quantity("specific internal energy", "J kg-1"),
+    "body": Quantity("index of the body the particle came from", "1"),
+}
+"""Variables of snapshots and of final.nc."""
