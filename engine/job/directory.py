@@ -18,7 +18,7 @@ from engine.job.storage import remove_partial_files, write_json
 
 
 class JobState(StrEnum):
-    """How a job stands; `corrupt` and `missing` are seen by readers of a campaign only, in the order people look for."""
+    """How a job stands; only readers of a campaign see `corrupt` and `missing`."""
 
     PENDING = "pending"
     RUNNING = "running"

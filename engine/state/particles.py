@@ -36,8 +36,8 @@ class Particles:
     x, v: position and velocity; C: affine velocity [1/s]; j = det F - 1; tau: Kirchhoff stress [Pa]; mass; body: index
     of the body; origin: coordinates of the grid block that held the particle when blocks were last built. Parts of the
     physics hold more: b_minus_I, left Cauchy-Green tensor of the isochoric elastic strain minus I; E, energy [J/kg];
-    damage_root, cube root of damage; acceleration, gravity held at present. A quantity that no part holds is zero: it is read as zeros,
-    and nothing else can be written to it.
+    damage_root, cube root of damage; acceleration, gravity held at present. A quantity that no part requires is
+    zero: it is read as zeros, and nothing else can be written to it.
 
     On the device particles lie in the order of the last `sort`, so that those of a block are read in one go. `index`
     holds their numbers in the scene, which never change and by which `read` and `write` know them.
