@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib import pyplot as plt
 
 from analysis.report.figures.angle import shape_versus_angle
 from analysis.report.products import plots
@@ -136,4 +135,3 @@ def test_figures_show_the_errors(tmp_path: Path) -> None:
     bars = figure.axes[0].containers[0].lines[2][0].get_segments()
     lengths = [0.5 * (bar[1][1] - bar[0][1]) for bar in bars]
     np.testing.assert_allclose(lengths, results["b_over_a_error"].isel(velocity=0))
-    plt.close(figure)
