@@ -10,10 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from analysis.report.figures.style import GREY, MARKERS, nothing_done, shades, styled
+from analysis.report.figures.style import GREY, MARKERS, Directories, nothing_done, shades, styled
 from analysis.results.tables import cells, series
 
 Look = dict[str, Any]
+
+NAME = "shape_vs_angle"
+CAPTION = "Axis ratios of the largest remnant against impact angle."
 
 DASHES = ("-", "--", ":", "-.")
 
@@ -21,7 +24,7 @@ PANELS = {"b_over_a": "$b/a$", "c_over_a": "$c/a$"}
 
 
 @styled
-def shape_versus_angle(results: xr.Dataset) -> Figure:
+def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """b/a and c/a against angle, thin remnants hollow.
 
     Bars are the errors of a study with error bars, else, over an axis of seeds, the standard deviation of one run.

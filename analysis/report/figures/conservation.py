@@ -14,6 +14,9 @@ from analysis.results.tables import cells
 from engine.job.directory import JobDirectory
 from engine.scene.scene import scene_in
 
+NAME = "conservation"
+CAPTION = "Energies of one run, and drifts of the conserved quantities of all."
+
 LEDGER = {
     "kinetic_energy": ("kinetic", BLUE),
     "affine_kinetic_energy": ("kinetic, affine part", PURPLE),
@@ -27,7 +30,7 @@ SMALLEST = 1e-17
 
 
 @styled
-def conservation(results: xr.Dataset, directories: Directories) -> Figure:
+def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """The energy ledger of the first job that is done, and the drifts of all of them over time.
 
     Args:

@@ -13,7 +13,10 @@ from analysis.report.figures.views import Frame, Views, frame_around, views_of
 from analysis.results.tables import series
 from engine.job.directory import JobDirectory
 
-WIDE, NARROW, GAP, CAPTION = 2.5, 1.7, 0.1, 0.46
+NAME = "remnants"
+CAPTION = "The largest remnant of every collision, along its shortest axis and edge-on."
+
+WIDE, NARROW, GAP, CAPTION_HEIGHT = 2.5, 1.7, 0.1, 0.46
 """Widths of a panel, space between panels, and space for a caption [inch]."""
 
 KEY = (
@@ -26,7 +29,7 @@ WRAP = 4
 
 
 @styled
-def gallery(results: xr.Dataset, directories: Directories) -> Figure:
+def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """One picture a cell at a common scale; of several seeds the first.
 
     Args:
@@ -60,10 +63,10 @@ def _grid(count: int, columns: int, width: float, frame: Frame) -> tuple[Figure,
     """A figure of `count` panels around the frame, each `width` inches wide, with room for captions."""
     rows = -(-count // columns)
     height = width * (frame.flat + frame.edge) / frame.width
-    size = (columns * width + (columns - 1) * GAP, rows * height + (rows - 1) * CAPTION)
+    size = (columns * width + (columns - 1) * GAP, rows * height + (rows - 1) * CAPTION_HEIGHT)
     figure = Figure(figsize=size)
     panels = figure.subplots(rows, columns, squeeze=False)
-    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=1.0, wspace=GAP / width, hspace=CAPTION / height)
+    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=1.0, wspace=GAP / width, hspace=CAPTION_HEIGHT / height)
     for axes in panels.ravel():
         axes.set_axis_off()
     return figure, panels.ravel()

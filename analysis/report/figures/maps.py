@@ -10,8 +10,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from analysis.report.figures.style import GREY, styled
+from analysis.report.figures.style import GREY, Directories, styled
 from analysis.results.tables import series
+
+NAME = "maps"
+CAPTION = "Mass and axis ratios of the largest remnant over velocity and angle."
 
 PANELS = {
     "mass_ratio": (r"$M_\mathrm{lr}\,/\,M_\mathrm{target}$", 2.0),
@@ -22,7 +25,7 @@ PANELS = {
 
 
 @styled
-def maps(results: xr.Dataset) -> Figure:
+def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """M_lr/M_target, b/a and c/a, one row of maps per series; means over seeds, missing cells with their state."""
     groups = list(series(results))
     tallest, widest = (max(rows[name].nunique() for _, rows in groups) for name in ("velocity", "angle"))

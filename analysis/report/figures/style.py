@@ -3,10 +3,11 @@
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
-from typing import Any, ParamSpec
+from typing import Any, ParamSpec, Protocol
 
 import matplotlib
 import numpy as np
+import xarray as xr
 from matplotlib.figure import Figure
 
 from engine.job.storage import write_atomically
@@ -16,6 +17,27 @@ BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", 
 
 Directories = dict[str, Path]
 """Job directory of each job id."""
+
+
+class Drawing(Protocol):
+    """A module that draws one figure of a campaign.
+
+    Attributes:
+        NAME: stem of its file in figures/.
+        CAPTION: what it shows, in one sentence.
+    """
+
+    NAME: str
+    CAPTION: str
+
+    def draw(self, results: xr.Dataset, directories: Directories) -> Figure:
+        """Draw the figure.
+
+        Args:
+            results: the results of a campaign.
+            directories: job directory of each job id.
+        """
+
 
 MARKERS = "osD^vP*X"
 
