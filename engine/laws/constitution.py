@@ -28,7 +28,7 @@ class Constitution:
 
     Args:
         particles: state of the particles.
-        pressure: equation of state.
+        eos: equation of state; its `evaluate` gives pressure and squared sound speed.
         energy: internal energy.
         shear: shear stress, with its strength.
         damage: damage, with its growth.
@@ -39,14 +39,14 @@ class Constitution:
     def __init__(
         self,
         particles: Any,
-        pressure: Any,
+        eos: Any,
         energy: Any,
         shear: Any,
         damage: Any,
         viscosity: Any,
         materials: Sequence[Material],
     ) -> None:
-        self.particles, self.pressure, self.energy = particles, pressure, energy
+        self.particles, self.eos, self.energy = particles, eos, energy
         self.shear, self.damage, self.viscosity = shear, damage, viscosity
         self.table = ti.types.struct(rho0=Real).field(shape=len(materials))
         for i, material in enumerate(materials):
@@ -68,7 +68,7 @@ class Constitution:
         half_work = 0.5 / m.rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E, D = self.energy.after(p, 2.0 * half_work), self.damage.value(p)
         J = 1.0 + j
-        P, c2 = self.pressure.pressure(-j / J, E, body)
+        P, c2 = self.eos.evaluate(p, -j / J, E, body)
         if P < 0.0:
             P *= 1.0 - D
         s = self.shear.stress(p, A, growth, J, P, E, D, body)
@@ -84,7 +84,7 @@ class Constitution:
     def signal_speed(self, p):
         """Speed of the fastest wave [m/s] in particle p as it is."""
         body, J = self.particles.body[p], 1.0 + self.particles.j[p]
-        _, c2 = self.pressure.pressure(-self.particles.j[p] / J, self.energy.after(p, 0.0), body)
+        _, c2 = self.eos.evaluate(p, -self.particles.j[p] / J, self.energy.after(p, 0.0), body)
         return self.wave_speed(c2, body)
 
     @ti.func
