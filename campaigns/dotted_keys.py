@@ -3,9 +3,11 @@
 from collections.abc import Iterable, Iterator
 from copy import deepcopy
 from functools import reduce
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import BaseModel
+
+from engine.scene.input_errors import models_in
 
 LEADING = ("velocity", "angle")
 """Keys that come first wherever keys are listed."""
@@ -47,16 +49,8 @@ def value_at(model: BaseModel, key: str) -> Any:
 
 
 def scalar_keys(model: type[BaseModel], prefix: str = "") -> Iterator[str]:
-    """Dotted keys of all single values of an input model."""
+    """Dotted keys of all single values of an input model; those of every kind of table that a key may hold."""
     for name, field in model.model_fields.items():
-        table = _table_in(field.annotation)
-        if table:
-            yield from scalar_keys(table, f"{prefix}{name}.")
-        else:
-            yield prefix + name
-
-
-def _table_in(annotation: Any) -> type[BaseModel] | None:
-    """The input model in `Model` or `Model | None`."""
-    choices = (annotation, *get_args(annotation))
-    return next((kind for kind in choices if isinstance(kind, type) and issubclass(kind, BaseModel)), None)
+        tables = models_in(field.annotation)
+        below = [key for table in tables for key in scalar_keys(table, f"{prefix}{name}.")]
+        yield from dict.fromkeys(below) if tables else [prefix + name]

@@ -4,13 +4,12 @@ State of every particle: `j` = det F - 1 and Kirchhoff stress `tau` = J sigma; t
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import taichi as ti
 
 from engine.device.backend import Real
 from engine.device.tensors import determinant_increment, identity, pack, symmetric, unpack
-from engine.laws.interfaces import DamageLaw, EnergyLaw, ShearLaw, ViscosityLaw
+from engine.laws.interfaces import DamageLaw, EnergyLaw, EquationOfStateLaw, ShearLaw, ViscosityLaw
 from engine.scene.material import Material
 from engine.state.particles import Particles
 
@@ -30,7 +29,7 @@ class Constitution:
 
     Args:
         particles: state of the particles.
-        pressure: equation of state.
+        eos: equation of state; its `evaluate` gives pressure and squared sound speed.
         energy: internal energy.
         shear: shear stress, with its strength.
         damage: damage, with its growth.
@@ -41,14 +40,14 @@ class Constitution:
     def __init__(
         self,
         particles: Particles,
-        pressure: Any,
+        eos: EquationOfStateLaw,
         energy: EnergyLaw,
         shear: ShearLaw,
         damage: DamageLaw,
         viscosity: ViscosityLaw,
         materials: Sequence[Material],
     ) -> None:
-        self.particles, self.pressure, self.energy = particles, pressure, energy
+        self.particles, self.eos, self.energy = particles, eos, energy
         self.shear, self.damage, self.viscosity = shear, damage, viscosity
         self.table = ti.types.struct(rho0=Real).field(shape=len(materials))
         for i, material in enumerate(materials):
@@ -70,7 +69,7 @@ class Constitution:
         half_work = 0.5 / m.rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E, D = self.energy.after(p, 2.0 * half_work), self.damage.value(p)
         J = 1.0 + j
-        P, c2 = self.pressure.pressure(-j / J, E, body)
+        P, c2 = self.eos.evaluate(p, -j / J, E, body)
         if P < 0.0:
             P *= 1.0 - D
         s = self.shear.stress(p, A, growth, J, P, E, D, body)
@@ -86,7 +85,7 @@ class Constitution:
     def signal_speed(self, p):
         """Speed of the fastest wave [m/s] in particle p as it is."""
         body, J = self.particles.body[p], 1.0 + self.particles.j[p]
-        _, c2 = self.pressure.pressure(-self.particles.j[p] / J, self.energy.after(p, 0.0), body)
+        _, c2 = self.eos.evaluate(p, -self.particles.j[p] / J, self.energy.after(p, 0.0), body)
         return self.wave_speed(c2, body)
 
     @ti.func

@@ -9,6 +9,20 @@ does nothing; the contract is written here once for both.
 from typing import Protocol
 
 
+class EquationOfStateLaw(Protocol):
+    """Pressure and speed of sound (engine/physics.md, section 2)."""
+
+    def evaluate(self, p, mu, E, body):
+        """Return the pressure [Pa] and the squared speed of sound [m^2/s^2].
+
+        Args:
+            p: index of the particle.
+            mu: rho/rho0 - 1 [-].
+            E: specific internal energy [J/kg].
+            body: index of the body.
+        """
+
+
 class EnergyLaw(Protocol):
     """Specific internal energy E [J/kg] (engine/physics.md, section 2)."""
 

@@ -16,21 +16,22 @@ class Tillotson:
     """Pressure and sound speed from compression and energy.
 
     Args:
-        materials: one per body.
+        materials: one per body, all of Tillotson's form.
     """
 
     def __init__(self, materials: Sequence[Material]) -> None:
         constants = ("rho0", "a", "b", "A", "B", "E0", "E_iv", "E_cv", "alpha", "beta")
         self.table = ti.types.struct(**dict.fromkeys(constants, Real)).field(shape=len(materials))
         for i, material in enumerate(materials):
-            for name, value in {"rho0": material.rho0, **material.tillotson.model_dump()}.items():
+            for name, value in {"rho0": material.rho0, **material.eos.constants()}.items():
                 getattr(self.table, name)[i] = value
 
     @ti.func
-    def pressure(self, mu, energy, body):
+    def evaluate(self, p, mu, energy, body):
         """Pressure [Pa] and squared sound speed [m^2/s^2].
 
         Args:
+            p: index of the particle.
             mu: rho/rho0 - 1 [-].
             energy: specific internal energy [J/kg]; below zero there is no heat left that could press.
             body: index of the body, which fixes the material.
@@ -53,10 +54,10 @@ class Tillotson:
 
 @ti.data_oriented
 class ColdTillotson(Tillotson):
-    """Pressure on the cold curve, from compression alone; arguments as `Tillotson`."""
+    """Pressure on the cold curve, from compression alone; arguments as for `Tillotson`."""
 
     @ti.func
-    def pressure(self, mu, E, body):
+    def evaluate(self, p, mu, E, body):
         """Pressure [Pa] and squared sound speed [m^2/s^2]; there is no energy E."""
         m = self.table[body]
         floor = SOUND_SPEED_FLOOR * SOUND_SPEED_FLOOR * m.A

@@ -89,14 +89,14 @@ def _model_at(model: type[BaseModel], location: Location) -> type[BaseModel]:
 def _models_of(model: type[BaseModel], name: int | str) -> list[type[BaseModel]]:
     """The input models that a field may hold."""
     field = model.model_fields.get(str(name))
-    return _models_in(field.annotation) if field else []
+    return models_in(field.annotation) if field else []
 
 
-def _models_in(annotation: Any) -> list[type[BaseModel]]:
+def models_in(annotation: Any) -> list[type[BaseModel]]:
     """The input models inside `Model`, `Model | None`, or `tuple[Model, ...]`."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
-    return [model for argument in getattr(annotation, "__args__", ()) for model in _models_in(argument)]
+    return [model for argument in getattr(annotation, "__args__", ()) for model in models_in(argument)]
 
 
 def _keys_below(model: type[BaseModel]) -> list[str]:
@@ -112,4 +112,4 @@ def _keys_below(model: type[BaseModel]) -> list[str]:
 def _tables_in(field: FieldInfo) -> list[type[BaseModel]]:
     """The input models that a field may hold as a table, not those in lists."""
     marked = [mark.model for mark in field.metadata if isinstance(mark, KeysOf)]
-    return marked if get_origin(field.annotation) is tuple else marked + _models_in(field.annotation)
+    return marked if get_origin(field.annotation) is tuple else marked + models_in(field.annotation)

@@ -1,37 +1,34 @@
 """Material constants and the two published parameter sets (engine/physics.md, sections 2-5)."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from engine.scene.fields import Frozen, NonNegative, Number, Positive
+from engine.scene.input_errors import suggestion
+from engine.scene.murnaghan import MurnaghanParameters
+from engine.scene.tillotson import TillotsonParameters
 
 
-class TillotsonParameters(Frozen):
-    """Tillotson constants; the defaults are basalt (Benz & Asphaug 1999)."""
+def _form(given: Any) -> str | None:
+    """Name of the model that plain keys, or a model, describe; Tillotson's unless they name a form."""
+    form = given.get("form", "tillotson") if isinstance(given, dict) else getattr(given, "form", "tillotson")
+    return f"{form}".capitalize() + "Parameters"
 
-    a: Positive = 0.5
-    b: Positive = 1.5
-    A: Positive = 2.67e10
-    B: NonNegative = 2.67e10
-    E0: Positive = 4.87e8
-    E_iv: Positive = 4.72e6
-    E_cv: Positive = 1.82e7
-    alpha: NonNegative = 5.0
-    beta: NonNegative = 5.0
 
-    @model_validator(mode="after")
-    def _vaporises_completely_after_it_begins(self) -> Self:
-        if self.E_cv <= self.E_iv:
-            raise ValueError(f"'E_cv' {self.E_cv} J/kg must be greater than 'E_iv' {self.E_iv} J/kg")
-        return self
+AnyEquationOfState = Annotated[
+    Annotated[TillotsonParameters, Tag(TillotsonParameters.__name__)]
+    | Annotated[MurnaghanParameters, Tag(MurnaghanParameters.__name__)],
+    Discriminator(_form, "form", "'form' must be 'tillotson' or 'murnaghan'"),
+]
+"""Constants of an equation of state; their key `form` chooses which, Tillotson's if it is not given."""
 
 
 class Material(Frozen):
     """One solid [SI units]; the defaults are basalt with the constants of Sugiura et al. 2018."""
 
     rho0: Positive = 2700.0
-    tillotson: TillotsonParameters = TillotsonParameters()
+    eos: AnyEquationOfState = TillotsonParameters()
     shear_modulus: Positive = 2.27e10
     cohesion: NonNegative = 1.0e7
     intact_friction: NonNegative = 1.0
@@ -40,6 +37,13 @@ class Material(Frozen):
     damaged_friction: NonNegative = 0.839
     weibull_k: Positive = 4.0e35
     weibull_m: Annotated[Number, Field(ge=1.0, allow_inf_nan=False)] = 9.0
+
+    @model_validator(mode="before")
+    @classmethod
+    def _names_its_equation_of_state(cls, given: Any) -> Any:
+        if isinstance(given, dict) and "tillotson" in given:
+            raise ValueError(f"unknown key 'tillotson'{suggestion('eos', list(cls.model_fields))}")
+        return given
 
     @model_validator(mode="after")
     def _strengthens_with_pressure(self) -> Self:
@@ -50,7 +54,7 @@ class Material(Frozen):
     @property
     def longitudinal_modulus(self) -> float:
         """K + 4G/3 [Pa] at the reference state."""
-        return self.tillotson.A + 4.0 / 3.0 * self.shear_modulus
+        return self.eos.bulk_modulus() + 4.0 / 3.0 * self.shear_modulus
 
     @property
     def longitudinal_speed(self) -> float:
@@ -60,14 +64,13 @@ class Material(Frozen):
     @property
     def young_modulus(self) -> float:
         """9KG/(3K+G) [Pa] at the reference state."""
-        bulk, shear = self.tillotson.A, self.shear_modulus
+        bulk, shear = self.eos.bulk_modulus(), self.shear_modulus
         return 9.0 * bulk * shear / (3.0 * bulk + shear)
 
     def slowed(self, factor: float) -> Self:
         """The same solid with elastic moduli that let waves travel at `factor` of their speed; its strength stays."""
-        square, eos = factor**2, self.tillotson
-        softer = eos.model_copy(update={"A": square * eos.A, "B": square * eos.B})
-        return self.model_copy(update={"tillotson": softer, "shear_modulus": square * self.shear_modulus})
+        shear = factor**2 * self.shear_modulus
+        return self.model_copy(update={"eos": self.eos.softened(factor), "shear_modulus": shear})
 
 
 class FractureRules(Frozen):

@@ -88,7 +88,8 @@ class Wall(Frozen):
 class Physics(Frozen):
     """The parts of physics a scene uses; `false` leaves a part out, and it then costs nothing.
 
-    Pressure is always Tillotson's; without `energy` it follows the cold curve, and the ledger has no internal energy.
+    Pressure is that of the materials' equation of state, of one form in all bodies; without `energy` it follows the
+    cold curve, and the ledger has no internal energy.
     `shear` adds the Hencky deviatoric stress, `strength` its radial return;
     `uniform_gravity` [m/s^2] takes the place of self-gravity.
 
@@ -173,6 +174,13 @@ class Scene(Frozen):
             raise ValueError(
                 "'hydrostatic' pressure needs self-gravity to hold it: leave it out of the body, or set it to false"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _has_one_form_of_equation_of_state(self) -> Self:
+        forms = sorted({body.material.eos.form for body in self.bodies})
+        if len(forms) > 1:
+            raise ValueError(f"'eos' must be of one form in all bodies of a scene (given {', '.join(forms)})")
         return self
 
     @model_validator(mode="after")

@@ -7,17 +7,19 @@ from engine.gravity.barnes_hut import Tree
 from engine.gravity.direct_sum import DirectSum
 from engine.gravity.self_gravity import SelfGravity
 from engine.gravity.uniform import UniformGravity, Weightless
+from engine.laws.algebraic import Algebraic
 from engine.laws.constitution import Constitution
 from engine.laws.damage import Damage, Intact
 from engine.laws.energy import InternalEnergy, NoInternalEnergy
 from engine.laws.fracture import Fracture, Unbreakable
-from engine.laws.interfaces import DamageLaw, ShearLaw
+from engine.laws.interfaces import DamageLaw, EquationOfStateLaw, ShearLaw
 from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
 from engine.mpm.walls import Walls
 from engine.scene.scene import Scene
+from engine.scene.tillotson import TillotsonParameters
 from engine.simulation.initial_conditions import all_flaws
 from engine.state.particles import Particles
 
@@ -27,7 +29,7 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
     physics, materials = scene.physics, scene.materials
     return Constitution(
         particles,
-        Tillotson(materials) if physics.energy else ColdTillotson(materials),
+        _equation_of_state(scene),
         InternalEnergy(particles) if physics.energy else NoInternalEnergy(),
         _shear(scene, particles),
         _damage(scene, particles),
@@ -48,6 +50,15 @@ def gravity(scene: Scene, particles: Particles) -> SelfGravity | UniformGravity 
 def walls(scene: Scene) -> Walls | None:
     """Rigid planes."""
     return Walls(scene.physics.walls) if scene.physics.walls else None
+
+
+def _equation_of_state(scene: Scene) -> EquationOfStateLaw:
+    """Pressure by the form that all bodies share; without internal energy Tillotson's follows the cold curve."""
+    materials = scene.materials
+    eos = materials[0].eos
+    if isinstance(eos, TillotsonParameters):
+        return Tillotson(materials) if scene.physics.energy else ColdTillotson(materials)
+    return Algebraic(eos.formula, materials)
 
 
 def _shear(scene: Scene, particles: Particles) -> ShearLaw:

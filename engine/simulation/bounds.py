@@ -41,16 +41,10 @@ def compression_limit(material: Material, energy: float) -> float:
     """rho/rho0 at which cold compression has used up a specific energy [J/kg]; infinite if it never does."""
 
     def missing(log_eta: float) -> float:
-        return cold_energy(material, math.exp(log_eta)) - energy
+        return material.eos.cold_energy(material.rho0, math.exp(log_eta)) - energy
 
     largest = math.log(LARGEST_COMPRESSION)
     return math.exp(brentq(missing, 0.0, largest)) if missing(largest) > 0.0 else math.inf
-
-
-def cold_energy(material: Material, eta: float) -> float:
-    """Specific energy [J/kg] of compression to eta without heat: the integral of (A mu + B mu^2)/rho^2 over rho."""
-    A, B, log = material.tillotson.A, material.tillotson.B, math.log(eta)
-    return (A * (log + 1.0 / eta - 1.0) + B * (eta - 1.0 / eta - 2.0 * log)) / material.rho0
 
 
 def energy_growth(scene: Scene, row: Row, start: Row) -> float:

@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from engine.constants import G_NEWTON
 from engine.laws.flaws import Flaws, draw_flaws, join
 from engine.scene.bodies import Body, Box, Sphere
-from engine.scene.material import Material
 from engine.scene.placement import box_points, sphere_points
 from engine.scene.scene import Scene
 from engine.state.particles import Arrays
@@ -37,7 +36,8 @@ def _body_state(scene: Scene, index: int) -> Arrays:
     points, pressure = _points(scene, index, body), np.zeros(body.count)
     if isinstance(body, Sphere) and body.hydrostatic:
         pressure = _hydrostatic_pressure(body, points)
-    mu, energy = compressed(pressure, scene.materials[index], scene.physics.energy)
+    material = scene.materials[index]
+    mu, energy = material.eos.compression_at(pressure, material.rho0, scene.physics.energy)
     return {
         "x": points + np.array(body.position),
         "v": np.array(body.velocity) + np.cross(np.array(body.spin), points),
@@ -49,24 +49,6 @@ def _body_state(scene: Scene, index: int) -> Arrays:
         "mass": np.full(body.count, body.mass / body.count),
         "body": np.full(body.count, index, dtype=np.int32),
     }
-
-
-def compressed(P: Vector, material: Material, energy: bool) -> tuple[Vector, Vector]:
-    """Compression rho/rho0 - 1 [-] and energy [J/kg] of cold rock under pressure.
-
-    The energy is that of elastic strain, A mu^2 / (2 rho); it presses too, so P = A mu + (B + (a + b) A/2) mu^2
-    (engine/physics.md, sections 2 and 8; without the energy's own share in w0, 1e-10 of its pressure).
-    Matter without energy is on the cold curve, P = A mu + B mu^2.
-
-    Args:
-        P: pressure [Pa], shape [particle_count].
-        material: with the elastic moduli in force.
-        energy: whether matter keeps energy.
-    """
-    eos, elastic = material.tillotson, 0.5 * material.tillotson.A * float(energy)
-    quadratic = eos.B + (eos.a + eos.b) * elastic
-    mu = 2.0 * P / (eos.A + np.sqrt(eos.A**2 + 4.0 * quadratic * P))
-    return mu, elastic * mu**2 / (material.rho0 * (1.0 + mu))
 
 
 def _points(scene: Scene, index: int, body: Sphere | Box) -> NDArray[np.float64]:

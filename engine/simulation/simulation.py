@@ -170,7 +170,7 @@ class Simulation:
         """What the run must conserve, now."""
         state = self.particles.read("x", "v", "C", "E", "mass", "j", "tau", "body", "acceleration")
         materials, rho0 = self.scene.materials, self.rho0(state)
-        bulk = np.array([material.tillotson.A for material in materials])[state["body"]]
+        bulk = np.array([material.eos.bulk_modulus() for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
         elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, rho0, self.next_dt)
         return totals(state, self.scene.dx, elastic, self.gravity.energy(), work)

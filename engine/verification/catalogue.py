@@ -6,7 +6,7 @@ from engine.verification.problems.cliff import Cliff
 from engine.verification.problems.collapse import Collapse
 from engine.verification.problems.column import Column
 from engine.verification.problems.expansion import Expansion
-from engine.verification.problems.hugoniot import Hugoniot
+from engine.verification.problems.hugoniot import MURNAGHAN, Hugoniot
 from engine.verification.problems.hydrostatic import Hydrostatic
 from engine.verification.problems.infall import Infall
 from engine.verification.problems.rotation import Rotation
@@ -23,6 +23,7 @@ SHORT: dict[str, Problem] = {
         Expansion(),
         Column(),
         Hugoniot(),
+        Hugoniot(speeds=(500.0,), material=MURNAGHAN, name="hugoniot_murnaghan"),
         Bar(),
         Slope(),
         Collapse(),

@@ -42,7 +42,7 @@ class StretchConstitution(Constitution):
         strain = strain_increment(dt * L)
         half_work = 0.5 / m.rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E = self.energy.after(p, 2.0 * half_work)
-        P, c2 = self.pressure.pressure(1.0 / J - 1.0, E, body)
+        P, c2 = self.eos.evaluate(p, 1.0 / J - 1.0, E, body)
         if P < 0.0:
             P *= 1.0 - self.damage.value(p)
         F, s, largest = self.shear_part(F, J, P, E, p)

@@ -11,6 +11,7 @@ LAWS = {
     "tensors": "logarithms, eigenvalues",
     "deform": "deformation",
     "tillotson": "Tillotson pressure",
+    "algebraic": "Murnaghan pressure",
     "strength": "strength",
     "fracture": "damage",
     "viscosity": "viscosity",

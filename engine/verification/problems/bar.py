@@ -79,7 +79,7 @@ class Pull:
 def _stress(e: float, D: Array, m: Material) -> Array:
     """Axial Cauchy stress [Pa] at the log strain e: pressure keeps 1 - D of itself, shear is bounded by strength."""
     mu = np.expm1(-e)
-    pressure = (1.0 - D) * (m.tillotson.A * mu + m.tillotson.B * mu**2)
+    pressure = (1.0 - D) * m.eos.pressure(m.rho0, mu, 0.0)
     root_J2 = 2.0 * m.shear_modulus * np.exp(-e) * e / np.sqrt(3.0)
     shear = np.minimum(root_J2, (1.0 - D) * m.cohesion)
     return np.asarray(2.0 / np.sqrt(3.0) * shear - pressure)

@@ -5,10 +5,8 @@ import numpy as np
 from engine.constants import BLOCK_EDGE
 from engine.mpm.blocks import HALF_RANGE
 from engine.scene.scene import Scene
-from engine.simulation.bounds import cold_energy
 from engine.simulation.initial_conditions import initial_state
 from engine.state.particles import Arrays
-from engine.verification.problems.materials import condensed_pressure
 from engine.verification.stability.case import Changes
 
 
@@ -18,8 +16,8 @@ def strained(eta: float, damage: float = 0.0) -> Changes:
     def changes(scene: Scene) -> Arrays:
         material = scene.materials[0]
         held = 1.0 if eta > 1.0 else 1.0 - damage
-        energy = held * min(cold_energy(material, eta), 0.99 * material.tillotson.E_iv)
-        tau = -held * condensed_pressure(material, eta - 1.0, energy) / eta
+        energy = held * min(material.eos.cold_energy(material.rho0, eta), 0.99 * material.eos.vaporisation_energy())
+        tau = -held * material.eos.pressure(material.rho0, eta - 1.0, energy) / eta
         return {
             # particles where such density puts them
             "x": initial_state(scene)["x"] * eta ** (-1.0 / 3.0),

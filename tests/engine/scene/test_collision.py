@@ -145,7 +145,7 @@ BAD = {
     "fraction of a particle": ({"particles": 10.5}, "'particles'", "10.5"),
     "misspelt": ({"raduis": 1e4}, "unknown key 'raduis'", "did you mean 'radius'"),
     "misspelt within": ({"numerics": {"cfi": 0.1}}, "unknown key 'numerics.cfi'", "did you mean 'cfl'"),
-    "misspelt material": ({"material": {"tillotson": {"e0": 1.0}}}, "material.tillotson.e0", "did you mean 'E0'"),
+    "misspelt material": ({"material": {"eos": {"e0": 1.0}}}, "material.eos.e0", "did you mean 'E0'"),
     "misspelt set": ({"parameter_set": "tolk"}, "unknown parameter_set 'tolk'", "did you mean 'talk'"),
     "start inside": ({"start_separation": 1.0}, "'start_separation'", "greater than 1", "1.0"),
     "ends at contact": ({"end_time": 0.0}, "end_time", "0.0", "greater than 0"),

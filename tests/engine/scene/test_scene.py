@@ -38,7 +38,7 @@ BAD = {
     "negative density": (with_material(rho0=-1.0), "'bodies.1.material.rho0'", "-1.0"),
     "flat distribution": (with_material(weibull_m=0.5), "'bodies.1.material.weibull_m'", "0.5"),
     "strength below cohesion": (with_material(strength_limit=1e7), "strength_limit", "cohesion", "10000000.0"),
-    "vapour before vaporisation": (with_material(tillotson={"E_cv": 4e6}), "E_cv", "E_iv", "4000000.0"),
+    "vapour before vaporisation": (with_material(eos={"E_cv": 4e6}), "E_cv", "E_iv", "4000000.0"),
     "ends before it starts": ({"end_time": -5.0}, "end_time -5.0", "start_time 0.0"),
     "starts at infinity": ({"start_time": float("-inf")}, "'start_time'", "finite", "-inf"),
     "no end": ({"end_time": None}, "'end_time'", "None"),

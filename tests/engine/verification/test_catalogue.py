@@ -19,7 +19,7 @@ from engine.verification.problems.cliff import Cliff
 from engine.verification.problems.collapse import Fall
 from engine.verification.problems.column import Column
 from engine.verification.problems.expansion import Expansion
-from engine.verification.problems.hugoniot import Hugoniot, Shock
+from engine.verification.problems.hugoniot import MURNAGHAN, Hugoniot, Shock
 from engine.verification.problems.hydrostatic import Hydrostatic
 from engine.verification.problems.rotation import Rotation
 from engine.verification.problems.rubble import Rubble
@@ -41,6 +41,7 @@ FAST = [
     Expansion(particles=300),
     Column(cells=(16, 32)),
     Hugoniot(speeds=(500.0,)),
+    Hugoniot(speeds=(500.0,), cells=40, material=MURNAGHAN, name="hugoniot_murnaghan"),
     Bar(rates=(0.1, 1.0)),
     Rubble(particles=100, end_time=400.0),
 ]

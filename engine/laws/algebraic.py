@@ -1,0 +1,45 @@
+"""Equations of state of plain arithmetic on the device (engine/scene/equation_of_state.py)."""
+
+from collections.abc import Callable, Sequence
+from types import FunctionType
+from typing import Any
+
+import taichi as ti
+
+from engine.device.backend import Real
+from engine.scene.material import Material
+
+
+@ti.data_oriented
+class Algebraic:
+    """Pressure and sound speed by the formula of an equation of state on the host.
+
+    Args:
+        formula: that of the form, see engine.scene.equation_of_state.AlgebraicEquationOfState.
+        materials: one per body, all of that form.
+    """
+
+    def __init__(self, formula: Callable[..., Any], materials: Sequence[Material]) -> None:
+        constants = [{"rho0": material.rho0, **material.eos.constants()} for material in materials]
+        self.table = ti.types.struct(**dict.fromkeys(constants[0], Real)).field(shape=len(materials))
+        for i, values in enumerate(constants):
+            for name, value in values.items():
+                getattr(self.table, name)[i] = value
+        self.formula = device_function(formula)
+
+    @ti.func
+    def evaluate(self, p, mu, E, body):
+        """Pressure [Pa] and squared sound speed [m^2/s^2].
+
+        Args:
+            p: index of the particle.
+            mu: rho/rho0 - 1 [-].
+            E: specific internal energy [J/kg].
+            body: index of the body, which fixes the material.
+        """
+        return self.formula(self.table[body], mu, E)
+
+
+def device_function(formula: Callable[..., Any]) -> Any:
+    """The function of the host compiled for the device, without its annotations, which Taichi takes for its own."""
+    return ti.func(FunctionType(formula.__code__, formula.__globals__, formula.__name__))
