@@ -7,7 +7,8 @@ from typing import Any
 
 import taichi as ti
 
-from engine.device.backend import TASK, capacity, on_gpu, vec3
+from engine.device.backend import TASK, on_gpu, vec3
+from engine.device.fields import capacity
 from engine.gravity.multipoles import Multipoles
 
 BATCH = 64

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from engine.device.backend import Real, capacity, mat3, vec3, vec4, vec6
+from engine.device.backend import Real, mat3, vec3, vec4, vec6
+from engine.device.fields import capacity
 from engine.device.tensors import identity, pack, unpack
 from engine.gravity.interfaces import Indices, Vectors
 from engine.gravity.median_partition import median_order

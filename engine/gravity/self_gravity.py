@@ -7,7 +7,8 @@ import numpy as np
 import taichi as ti
 
 from engine.constants import G_NEWTON
-from engine.device.backend import Real, capacity, on_gpu, overwrite
+from engine.device.backend import Real, on_gpu
+from engine.device.fields import capacity, overwrite
 from engine.gravity.interfaces import Indices, Scalars, Vectors
 from engine.gravity.net_force import NetForce, remove_net_force_and_torque
 
