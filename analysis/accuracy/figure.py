@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib import pyplot as plt
+from matplotlib import colormaps
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analysis.accuracy.cases import SEVERAL
 from analysis.accuracy.measure import MEASURED
 from analysis.campaign import NONE
-from analysis.report.figures.style import GREY, MARKERS
+from analysis.report.figures.style import GREY, MARKERS, styled
 from analysis.results.variables import OUTCOMES
 from engine.verification.accuracy.log_axes import label_decades
 from engine.verification.accuracy.pareto import pareto
@@ -23,16 +24,18 @@ HIDDEN = 0.05
 TITLES = {"mass_ratio": "$M_\\mathrm{lr}\\,/\\,M_\\mathrm{target}$", "b_over_a": "$b/a$", "c_over_a": "$c/a$"}
 
 
-def error_against_cost(found: xr.Dataset) -> Any:
+@styled
+def error_against_cost(found: xr.Dataset) -> Figure:
     """One panel an outcome: error against CPU time of every case, those that no other beats joined.
 
     The error is the difference to the finest case; where seeds do not resolve it, the interval that hides it, drawn
     hollow.
     """
-    figure, panels = plt.subplots(2, 2, figsize=(8.2, 6.0), layout="constrained", sharex=True)
+    figure = Figure(figsize=(8.2, 6.0), layout="constrained")
+    panels = figure.subplots(2, 2, sharex=True)
     found = found.assign_coords(knob=found["case"].where(found["knob"] == SEVERAL, found["knob"]))
     knobs = list(dict.fromkeys(str(knob) for knob in found["knob"].values))
-    looks = dict(zip(knobs, zip(plt.get_cmap("tab10").colors, cycle(MARKERS), strict=False), strict=False))
+    looks = dict(zip(knobs, zip(colormaps["tab10"](np.arange(10)), cycle(MARKERS), strict=False), strict=False))
     for axes, name in zip(panels.flat, MEASURED, strict=True):
         axes.set(xscale="log", yscale="log")
         _panel(axes, errors(found, name), looks)

@@ -16,14 +16,6 @@ from analysis.results.tables import as_shown, reasons, shape_table, unresolved
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_text
 
-CAPTIONS = {
-    "remnants": "The largest remnant of every collision, along its shortest axis and edge-on.",
-    "shape_vs_angle": "Axis ratios of the largest remnant against impact angle.",
-    "maps": "Mass and axis ratios of the largest remnant over velocity and angle.",
-    "conservation": "Energies of one run, and drifts of the conserved quantities of all.",
-}
-"""What each figure shows."""
-
 DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
 
 _page = Environment(
@@ -32,7 +24,7 @@ _page = Environment(
 
 
 def write_report(
-    campaign: Campaign, results: xr.Dataset, directories: Directories, figures: Sequence[Path], path: Path
+    campaign: Campaign, results: xr.Dataset, directories: Directories, figures: Sequence[tuple[str, Path]], path: Path
 ) -> None:
     """Write the page of a campaign.
 
@@ -40,7 +32,7 @@ def write_report(
         campaign: its description.
         results: its results.nc.
         directories: its jobs.
-        figures: PNG files in the order of the page, named as in `CAPTIONS`.
+        figures: captions and PNG files, in the order of the page.
         path: where the page is written.
     """
     text = _page.render(
@@ -48,7 +40,7 @@ def write_report(
         counts=results["state"].to_series().value_counts().to_dict(),
         table=_html(shape_table(results)),
         notes=[*unresolved(results), *reasons(results)],
-        figures=[(CAPTIONS[figure.stem], _embedded(figure)) for figure in figures],
+        figures=[(caption, _embedded(figure)) for caption, figure in figures],
         drifts=[_largest(results[name]) for name in DRIFTS],
         cpu_hours=float(results["cpu_time"].sum()) / 3600.0,
         settings={name: _plain(value) for name, value in results.attrs.items()},

@@ -5,14 +5,14 @@ from pathlib import Path
 import xarray as xr
 
 from analysis.campaign import read_campaign
-from analysis.report.figures.angle import shape_versus_angle
-from analysis.report.figures.conservation import conservation
-from analysis.report.figures.gallery import gallery
-from analysis.report.figures.maps import maps
-from analysis.report.figures.style import save
+from analysis.report.figures import angle, conservation, gallery, maps
+from analysis.report.figures.style import Drawing, save
 from analysis.report.page import write_report
 from analysis.results.collect import collect
 from analysis.results.tables import write_shape_table
+
+FIGURES: tuple[Drawing, ...] = (gallery, angle, maps, conservation)
+"""Figures of a campaign, in the order of its page."""
 
 
 def plots(campaign_directory: Path) -> tuple[xr.Dataset, list[Path]]:
@@ -27,14 +27,9 @@ def plots(campaign_directory: Path) -> tuple[xr.Dataset, list[Path]]:
     figures.mkdir(exist_ok=True)
     table, page = campaign_directory / "shape_table.csv", campaign_directory / "report.html"
     write_shape_table(results, table)
-    drawn = {
-        "remnants": gallery(results, directories),
-        "shape_vs_angle": shape_versus_angle(results),
-        "maps": maps(results),
-        "conservation": conservation(results, directories),
-    }
-    paths = [figures / f"{name}.png" for name in drawn]
-    for figure, path in zip(drawn.values(), paths, strict=True):
-        save(figure, path)
-    write_report(campaign, results, directories, paths, page)
+    paths = [figures / f"{drawing.NAME}.png" for drawing in FIGURES]
+    for drawing, path in zip(FIGURES, paths, strict=True):
+        save(drawing.draw(results, directories), path)
+    captioned = [(drawing.CAPTION, path) for drawing, path in zip(FIGURES, paths, strict=True)]
+    write_report(campaign, results, directories, captioned, page)
     return results, [table, *paths, page]

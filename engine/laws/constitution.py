@@ -10,7 +10,9 @@ import taichi as ti
 
 from engine.device.backend import Real
 from engine.device.tensors import determinant_increment, identity, pack, symmetric, unpack
+from engine.laws.interfaces import DamageLaw, EnergyLaw, ShearLaw, ViscosityLaw
 from engine.scene.material import Material
+from engine.state.particles import Particles
 
 
 @ti.func
@@ -38,12 +40,12 @@ class Constitution:
 
     def __init__(
         self,
-        particles: Any,
+        particles: Particles,
         pressure: Any,
-        energy: Any,
-        shear: Any,
-        damage: Any,
-        viscosity: Any,
+        energy: EnergyLaw,
+        shear: ShearLaw,
+        damage: DamageLaw,
+        viscosity: ViscosityLaw,
         materials: Sequence[Material],
     ) -> None:
         self.particles, self.pressure, self.energy = particles, pressure, energy
@@ -72,7 +74,7 @@ class Constitution:
         if P < 0.0:
             P *= 1.0 - D
         s = self.shear.stress(p, A, growth, J, P, E, D, body)
-        stress, diffusivity = self.viscosity.stress(symmetric(L), m.rho0 / J, ti.sqrt(c2))
+        stress, diffusivity = self.viscosity.stress(p, symmetric(L), m.rho0 / J, ti.sqrt(c2))
         tau = s + J * (stress - P * identity())
         self.particles.j[p], self.particles.tau[p] = j, pack(tau)
         # trapezoidal rule: the work of the mean stress, so that elastic energy does not drift

@@ -1,10 +1,10 @@
 """Damage of particles, or matter that has none (engine/physics.md, section 5)."""
 
-from typing import Any
-
 import taichi as ti
 
 from engine.device.backend import Real
+from engine.laws.interfaces import GrowthLaw
+from engine.state.particles import Particles
 
 
 @ti.data_oriented
@@ -16,30 +16,30 @@ class Damage:
         fracture: growth of damage.
     """
 
-    def __init__(self, particles: Any, fracture: Any) -> None:
+    def __init__(self, particles: Particles, fracture: GrowthLaw) -> None:
         self.damage_root, self.index, self.fracture = particles.require("damage_root"), particles.index, fracture
 
     @ti.func
     def value(self, p):
-        """Damage of particle p [-]."""
+        """Return the cube of the stored root."""
         root = self.damage_root[p]
         return root * root * root
 
     @ti.func
     def grow(self, p, s, P, dt, body):
-        """Break particle p further, under deviatoric Cauchy stress s [Pa] and pressure P [Pa], for a step dt [s]."""
+        """Store the root that `fracture` returns."""
         self.damage_root[p] = self.fracture.grow(self.damage_root[p], s, P, dt, self.index[p], body)
 
 
 @ti.data_oriented
 class Intact:
-    """Matter that is whole and never breaks."""
+    """Matter without damage."""
 
     @ti.func
     def value(self, p):
-        """None."""
+        """Return zero."""
         return ti.cast(0.0, Real)
 
     @ti.func
     def grow(self, p, s, P, dt, body):
-        """Nothing breaks."""
+        """Do nothing."""

@@ -1,10 +1,9 @@
-"""Internal energy of particles, or matter that does without (engine/physics.md, section 2)."""
-
-from typing import Any
+"""Internal energy of particles, or none (engine/physics.md, section 2)."""
 
 import taichi as ti
 
 from engine.device.backend import Real
+from engine.state.particles import Particles
 
 
 @ti.data_oriented
@@ -15,29 +14,29 @@ class InternalEnergy:
         particles: state of the particles.
     """
 
-    def __init__(self, particles: Any) -> None:
+    def __init__(self, particles: Particles) -> None:
         self.E = particles.require("E")
 
     @ti.func
     def after(self, p, work):
-        """Energy of particle p after work [J/kg] that is not yet added."""
+        """Return E[p] + work."""
         return self.E[p] + work
 
     @ti.func
     def add(self, p, work):
-        """Add work [J/kg] to the energy of particle p."""
+        """Add work to E[p]."""
         self.E[p] = self.E[p] + work  # += would be atomic
 
 
 @ti.data_oriented
 class NoInternalEnergy:
-    """Matter whose pressure depends on density alone, and which keeps no energy."""
+    """Matter without internal energy: its pressure depends on density alone."""
 
     @ti.func
     def after(self, p, work):
-        """None."""
+        """Return zero."""
         return ti.cast(0.0, Real)
 
     @ti.func
     def add(self, p, work):
-        """Work is forgotten."""
+        """Do nothing."""

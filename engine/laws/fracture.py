@@ -33,16 +33,7 @@ class Fracture:
 
     @ti.func
     def grow(self, root, s, P, dt, p, body):
-        """Cube root of damage after a step.
-
-        Args:
-            root: cube root of the damage before [-].
-            s: deviatoric Cauchy stress [Pa].
-            P: pressure [Pa].
-            dt: time step [s].
-            p: index of the particle.
-            body: index of its body.
-        """
+        """Return root + n_open rate dt, at most (n_open/n_all)^(1/3), where a flaw of particle p is open."""
         m = self.table[body]
         result, first, total = root, self.first[p], self.first[p + 1] - self.first[p]
         if root < 1.0 and total > 0:
@@ -67,11 +58,11 @@ class Fracture:
 
 @ti.data_oriented
 class Unbreakable:
-    """Matter that never breaks further."""
+    """Matter whose damage stays as it is at the start."""
 
     @ti.func
     def grow(self, root, s, P, dt, p, body):
-        """Damage stays."""
+        """Return `root`."""
         return root
 
 

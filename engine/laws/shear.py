@@ -5,7 +5,6 @@ instead of F keeps the digits of strains of 1e-6; an isotropic law does not see 
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import taichi as ti
 
@@ -20,8 +19,10 @@ from engine.device.tensors import (
     pack,
     unpack,
 )
+from engine.laws.interfaces import StrengthLaw
 from engine.laws.strength import return_factor
 from engine.scene.material import Material
+from engine.state.particles import Particles
 
 SMALL_GROWTH = 0.1
 """Change of volume in one step up to which its powers come from a series."""
@@ -59,7 +60,7 @@ class Hencky:
         materials: one per body.
     """
 
-    def __init__(self, particles: Any, strength: Any, materials: Sequence[Material]) -> None:
+    def __init__(self, particles: Particles, strength: StrengthLaw, materials: Sequence[Material]) -> None:
         self.b_minus_I, self.strength = particles.require("b_minus_I"), strength
         self.table = per_body(modulus=[material.shear_modulus for material in materials])
 
@@ -69,7 +70,7 @@ class Hencky:
 
         What remains elastic after yielding is kept; matter that bears no shear stress keeps no strain.
         """
-        G, Y = self.modulus(body), self.strength.limit(P, E, D, body)
+        G, Y = self.modulus(body), self.strength.limit(p, P, E, D, body)
         strain, remaining = mat3(0.0), vec6(0.0)
         if Y > 0.0:
             remaining = deform(self.b_minus_I[p], A, growth)

@@ -12,7 +12,7 @@ from engine.scene.material import Material
 
 @ti.data_oriented
 class Strength:
-    """Largest shear stress that rock bears, from intact to fully damaged.
+    """Largest shear stress of intact, damaged and partly damaged rock.
 
     Args:
         materials: one per body.
@@ -23,15 +23,8 @@ class Strength:
         self.table = per_body(**{name: [getattr(material, name) for material in materials] for name in constants})
 
     @ti.func
-    def limit(self, P, E, D, body):
-        """Largest sqrt(J2) [Pa].
-
-        Args:
-            P: pressure [Pa], positive in compression.
-            E: specific internal energy [J/kg].
-            D: damage [-].
-            body: index of the body, which fixes the material.
-        """
+    def limit(self, p, P, E, D, body):
+        """Return Y = (1 - D) Y_i + D Y_d [Pa]."""
         m = self.table[body]
         confining = ti.max(P, 0.0)
         friction, rise = m.intact_friction * confining, m.strength_limit - m.cohesion
@@ -46,8 +39,8 @@ class Unlimited:
     """A solid that never yields."""
 
     @ti.func
-    def limit(self, P, E, D, body):
-        """No shear stress is too large."""
+    def limit(self, p, P, E, D, body):
+        """Return infinity."""
         return ti.cast(tm.inf, Real)
 
 

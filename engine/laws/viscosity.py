@@ -23,14 +23,8 @@ class Viscosity:
             getattr(self.table, name)[None] = value
 
     @ti.func
-    def stress(self, d, rho, c):
-        """Viscous Cauchy stress [Pa], positive in tension, and the diffusivity [m^2/s] that limits the time step.
-
-        Args:
-            d: symmetric velocity gradient [1/s].
-            rho: density [kg/m^3].
-            c: sound speed [m/s].
-        """
+    def stress(self, p, d, rho, c):
+        """Return rho (2 nu dev(d) + zeta tr(d) I) [Pa] and nu + zeta [m^2/s], zeta with the shock viscosity."""
         m = self.table[None]
         divergence = d.trace()
         bulk = m.bulk
@@ -45,6 +39,6 @@ class Inviscid:
     """Matter without viscosity."""
 
     @ti.func
-    def stress(self, d, rho, c):
-        """No stress and no limit."""
+    def stress(self, p, d, rho, c):
+        """Return zero stress and diffusivity."""
         return mat3(0.0), ti.cast(0.0, Real)

@@ -3,8 +3,6 @@
 What a scene leaves out is stood for by a part that holds no field and does nothing, so it costs nothing.
 """
 
-from typing import Any
-
 from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
 from engine.gravity.interfaces import Gravity
@@ -13,6 +11,7 @@ from engine.laws.constitution import Constitution
 from engine.laws.damage import Damage, Intact
 from engine.laws.energy import InternalEnergy, NoInternalEnergy
 from engine.laws.fracture import Fracture, Unbreakable
+from engine.laws.interfaces import DamageLaw, ShearLaw
 from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
@@ -51,14 +50,14 @@ def walls(scene: Scene) -> Walls | None:
     return Walls(scene.physics.walls) if scene.physics.walls else None
 
 
-def _shear(scene: Scene, particles: Particles) -> Any:
+def _shear(scene: Scene, particles: Particles) -> ShearLaw:
     if not scene.physics.shear:
         return Fluid()
     strength = Strength(scene.materials) if scene.physics.strength else Unlimited()
     return Hencky(particles, strength, scene.materials)
 
 
-def _damage(scene: Scene, particles: Particles) -> Any:
+def _damage(scene: Scene, particles: Particles) -> DamageLaw:
     """Damage that grows, that stays, or none."""
     rule = scene.physics.fracture
     if rule:

@@ -47,6 +47,15 @@ class Particles:
         count: number of particles.
     """
 
+    x: ti.Field
+    v: ti.Field
+    C: ti.Field
+    j: ti.Field
+    tau: ti.Field
+    mass: ti.Field
+    body: ti.Field
+    origin: ti.Field
+
     def __init__(self, count: int) -> None:
         self.count = count
         self.index = ti.field(ti.i32, capacity(count))

@@ -3,12 +3,8 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.figure import Figure
 
 from engine.verification.check import Problem
 from engine.verification.problems.bar import CONTINUUM_PEAK, Bar, Pull
@@ -23,17 +19,15 @@ def draw(problems: Iterable[Problem], directory: Path) -> None:
     directory.mkdir(parents=True, exist_ok=True)
     for problem in problems:
         if isinstance(problem, Bar):
-            _bar(problem)
+            _bar(problem).savefig(directory / f"{problem.name}.png", dpi=110)
         elif isinstance(problem, Cliff):
-            _cliff(problem)
-        for number in plt.get_fignums():
-            plt.figure(number).savefig(directory / f"{problem.name}.png", dpi=110)
-        plt.close("all")
+            _cliff(problem).savefig(directory / f"{problem.name}.png", dpi=110)
 
 
-def _bar(problem: Bar) -> None:
+def _bar(problem: Bar) -> Figure:
     """Peak stress over strain rate and over particle spacing."""
-    _, (over_rate, over_spacing) = plt.subplots(1, 2, figsize=(10.0, 4.0), layout="constrained", sharey=True)
+    figure = Figure(figsize=(10.0, 4.0), layout="constrained")
+    over_rate, over_spacing = figure.subplots(1, 2, sharey=True)
     rates = np.array(problem.rates)
     over_rate.loglog(rates, CONTINUUM_PEAK * rates**0.25, "--", color="0.5", label="continuum law, rate$^{1/4}$")
     over_rate.loglog(rates, [Pull(rate).reference().max() for rate in rates], "-", label="NumPy, the same flaws")
@@ -46,11 +40,13 @@ def _bar(problem: Bar) -> None:
         over_spacing.loglog(spacing, [bar.engine().max() for bar in bars], "o-", label=f"{rate:g} /s")
     over_spacing.set(xlabel="particle spacing $h$ [m] of a bar of 4.2 m$^3$")
     over_spacing.legend()
+    return figure
 
 
-def _cliff(problem: Cliff) -> None:
+def _cliff(problem: Cliff) -> Figure:
     """Surface of the collapsed cliff."""
-    _, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
+    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    axes = figure.subplots()
     for number, (when, moment) in enumerate(problem.run().items()):
         color, band, sph = f"C{number}", experiment(when), jutzi(when)
         axes.fill_between(*band.T, color=color, alpha=0.25, lw=0.0, label=f"{when}: experiments (Lajeunesse 2005)")
@@ -58,3 +54,4 @@ def _cliff(problem: Cliff) -> None:
         axes.step(*problem.profile(moment), where="mid", color=color, label=f"{when}: engine")
     axes.set(xlabel="$L/L_0$", ylabel="$H/L_0$", xlim=(0.0, 8.0))
     axes.legend()
+    return figure

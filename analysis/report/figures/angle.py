@@ -6,28 +6,33 @@ from typing import Any
 
 import pandas as pd
 import xarray as xr
-from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from analysis.report.figures.style import GREY, MARKERS, nothing_done, shades
+from analysis.report.figures.style import GREY, MARKERS, Directories, nothing_done, shades, styled
 from analysis.results.tables import cells, series
 
 Look = dict[str, Any]
+
+NAME = "shape_vs_angle"
+CAPTION = "Axis ratios of the largest remnant against impact angle."
 
 DASHES = ("-", "--", ":", "-.")
 
 PANELS = {"b_over_a": "$b/a$", "c_over_a": "$c/a$"}
 
 
-def shape_versus_angle(results: xr.Dataset) -> Any:
+@styled
+def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """b/a and c/a against angle, thin remnants hollow.
 
     Bars are the errors of a study with error bars, else, over an axis of seeds, the standard deviation of one run.
     """
     if not (results["state"] == "done").any():
         return nothing_done()
-    figure, panels = plt.subplots(1, 2, figsize=(7.8, 3.5), sharey=True, layout="constrained")
+    figure = Figure(figsize=(7.8, 3.5), layout="constrained")
+    panels = figure.subplots(1, 2, sharey=True)
     looks = dict(_lines(results))
     for (name, title), axes in zip(PANELS.items(), panels, strict=True):
         for look, rows in looks.values():

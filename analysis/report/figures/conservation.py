@@ -5,14 +5,17 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analysis.remnant.conservation import drifts, read_history
-from analysis.report.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, shades
+from analysis.report.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, shades, styled
 from analysis.results.tables import cells
 from engine.job.directory import JobDirectory
 from engine.scene.scene import scene_in
+
+NAME = "conservation"
+CAPTION = "Energies of one run, and drifts of the conserved quantities of all."
 
 LEDGER = {
     "kinetic_energy": ("kinetic", BLUE),
@@ -26,7 +29,8 @@ SMALLEST = 1e-17
 """Drifts are drawn from here up: below a unit in the last place there is none."""
 
 
-def conservation(results: xr.Dataset, directories: Directories) -> Any:
+@styled
+def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """The energy ledger of the first job that is done, and the drifts of all of them over time.
 
     Args:
@@ -37,8 +41,9 @@ def conservation(results: xr.Dataset, directories: Directories) -> Any:
     done = table[table["state"] == "done"]
     if done.empty:
         return nothing_done()
-    figure = plt.figure(figsize=(10.4, 4.6), layout="constrained")
-    left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.6))
+    figure = Figure(figsize=(10.4, 4.6), layout="constrained")
+    halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.6))
+    left, right = halves
     first = done.iloc[0]
     _ledger(left, read_history(JobDirectory(directories[first["job"]]).history), first)
     _drifts(right, done, directories)

@@ -5,15 +5,18 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from analysis.report.figures.style import GREY, Directories, nothing_done
+from analysis.report.figures.style import GREY, Directories, nothing_done, styled
 from analysis.report.figures.views import Frame, Views, frame_around, views_of
 from analysis.results.tables import series
 from engine.job.directory import JobDirectory
 
-WIDE, NARROW, GAP, CAPTION = 2.5, 1.7, 0.1, 0.46
+NAME = "remnants"
+CAPTION = "The largest remnant of every collision, along its shortest axis and edge-on."
+
+WIDE, NARROW, GAP, CAPTION_HEIGHT = 2.5, 1.7, 0.1, 0.46
 """Widths of a panel, space between panels, and space for a caption [inch]."""
 
 KEY = (
@@ -25,7 +28,8 @@ WRAP = 4
 """Pictures in a row when the cells are no full grid of velocity and angle."""
 
 
-def gallery(results: xr.Dataset, directories: Directories) -> Any:
+@styled
+def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """One picture a cell at a common scale; of several seeds the first.
 
     Args:
@@ -55,13 +59,14 @@ def _columns(shown: pd.DataFrame) -> int:
     return angles if full and angles > 1 else min(WRAP, len(shown))
 
 
-def _grid(count: int, columns: int, width: float, frame: Frame) -> tuple[Any, Any]:
+def _grid(count: int, columns: int, width: float, frame: Frame) -> tuple[Figure, Any]:
     """A figure of `count` panels around the frame, each `width` inches wide, with room for captions."""
     rows = -(-count // columns)
     height = width * (frame.flat + frame.edge) / frame.width
-    size = (columns * width + (columns - 1) * GAP, rows * height + (rows - 1) * CAPTION)
-    figure, panels = plt.subplots(rows, columns, figsize=size, squeeze=False)
-    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=1.0, wspace=GAP / width, hspace=CAPTION / height)
+    size = (columns * width + (columns - 1) * GAP, rows * height + (rows - 1) * CAPTION_HEIGHT)
+    figure = Figure(figsize=size)
+    panels = figure.subplots(rows, columns, squeeze=False)
+    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=1.0, wspace=GAP / width, hspace=CAPTION_HEIGHT / height)
     for axes in panels.ravel():
         axes.set_axis_off()
     return figure, panels.ravel()

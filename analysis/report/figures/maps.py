@@ -5,12 +5,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib import pyplot as plt
+from matplotlib import colormaps
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from analysis.report.figures.style import GREY
+from analysis.report.figures.style import GREY, Directories, styled
 from analysis.results.tables import series
+
+NAME = "maps"
+CAPTION = "Mass and axis ratios of the largest remnant over velocity and angle."
 
 PANELS = {
     "mass_ratio": (r"$M_\mathrm{lr}\,/\,M_\mathrm{target}$", 2.0),
@@ -20,12 +24,14 @@ PANELS = {
 """Title and upper end of the colour scale of each map."""
 
 
-def maps(results: xr.Dataset) -> Any:
+@styled
+def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """M_lr/M_target, b/a and c/a, one row of maps per series; means over seeds, missing cells with their state."""
     groups = list(series(results))
     tallest, widest = (max(rows[name].nunique() for _, rows in groups) for name in ("velocity", "angle"))
     size = (3 * max(2.4, 0.42 * widest + 1.0), len(groups) * max(2.2, 0.36 * tallest + 1.0))
-    figure, panels = plt.subplots(len(groups), 3, figsize=size, squeeze=False, layout="constrained")
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(len(groups), 3, squeeze=False)
     for row, (title, table) in zip(panels, groups, strict=True):
         for axes, (name, (_, highest)) in zip(row, PANELS.items(), strict=True):
             _map(axes, table, name, highest)
@@ -40,7 +46,7 @@ def _map(axes: Any, table: pd.DataFrame, name: str, highest: float) -> None:
     values = table.pivot_table(index="velocity", columns="angle", values=name, aggfunc="mean", dropna=False)
     states = table.pivot_table(index="velocity", columns="angle", values="state", aggfunc=_least_done, dropna=False)
     states = states.reindex(index=values.index, columns=values.columns)
-    colours = plt.get_cmap("cividis")
+    colours = colormaps["cividis"]
     axes.imshow(values.to_numpy(float), cmap=colours, vmin=0.0, vmax=highest, aspect="auto", origin="lower")
     for (row, column), value in np.ndenumerate(values.to_numpy(float)):
         if np.isfinite(value):

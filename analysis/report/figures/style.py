@@ -1,16 +1,16 @@
 """One look for all figures: fonts, sizes, and colours that colour-blind readers can tell apart."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, ParamSpec, Protocol
 
 import matplotlib
 import numpy as np
-from matplotlib import pyplot as plt
+import xarray as xr
+from matplotlib.figure import Figure
 
 from engine.job.storage import write_atomically
-
-matplotlib.use("Agg")
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#666666"
 """Okabe & Ito (2008)."""
@@ -18,48 +18,85 @@ BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", 
 Directories = dict[str, Path]
 """Job directory of each job id."""
 
+
+class Drawing(Protocol):
+    """A module that draws one figure of a campaign.
+
+    Attributes:
+        NAME: stem of its file in figures/.
+        CAPTION: what it shows, in one sentence.
+    """
+
+    NAME: str
+    CAPTION: str
+
+    def draw(self, results: xr.Dataset, directories: Directories) -> Figure:
+        """Draw the figure.
+
+        Args:
+            results: the results of a campaign.
+            directories: job directory of each job id.
+        """
+
+
 MARKERS = "osD^vP*X"
 
-plt.rcParams.update(
-    {
-        "font.family": "DejaVu Sans",
-        "font.size": 9,
-        "axes.titlesize": 10,
-        "axes.labelsize": 9,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-        "axes.linewidth": 0.8,
-        "axes.edgecolor": "#333333",
-        "axes.grid": False,
-        "xtick.labelsize": 8,
-        "ytick.labelsize": 8,
-        "legend.fontsize": 8,
-        "legend.frameon": False,
-        "lines.linewidth": 1.4,
-        "lines.markersize": 5.5,
-        "figure.dpi": 150,
-        "savefig.dpi": 150,
-        "hatch.linewidth": 0.5,
-    }
-)
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.labelsize": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.8,
+    "axes.edgecolor": "#333333",
+    "axes.grid": False,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    "lines.markersize": 5.5,
+    "figure.dpi": 150,
+    "savefig.dpi": 150,
+    "hatch.linewidth": 0.5,
+}
+"""Settings of matplotlib in force while a figure is drawn and written, and only then."""
+
+Arguments = ParamSpec("Arguments")
+
+
+def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
+    """Let a function draw in `STYLE`; the settings of the caller stay as they are."""
+
+    @wraps(draw)
+    def drawn(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
+        with matplotlib.rc_context(STYLE):
+            return draw(*args, **kwargs)
+
+    return drawn
 
 
 def shades(levels: Iterable[float]) -> dict[float, Any]:
     """A colour for each level, dark for low and light for high."""
     levels = sorted({float(level) for level in levels})
-    return dict(zip(levels, plt.get_cmap("viridis")(np.linspace(0.0, 0.88, len(levels))), strict=True))
+    return dict(zip(levels, matplotlib.colormaps["viridis"](np.linspace(0.0, 0.88, len(levels))), strict=True))
 
 
-def nothing_done() -> Any:
+@styled
+def nothing_done() -> Figure:
     """A figure that says why it shows nothing."""
-    figure, axes = plt.subplots(figsize=(6.0, 2.0))
+    figure = Figure(figsize=(6.0, 2.0))
+    axes = figure.subplots()
     axes.set(xticks=[], yticks=[])
     axes.spines[:].set(visible=True, color="#cccccc")
     axes.text(0.5, 0.5, "no job of this campaign is done yet", ha="center", va="center", color=GREY, fontsize=11)
     return figure
 
 
-def save(figure: Any, path: Path) -> None:
-    """Write a figure as PNG and release it."""
-    write_atomically(path, lambda partial: figure.savefig(partial, format="png", bbox_inches="tight", pad_inches=0.12))
-    plt.close(figure)
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as PNG."""
+    with matplotlib.rc_context(STYLE):
+        write_atomically(
+            path, lambda partial: figure.savefig(partial, format="png", bbox_inches="tight", pad_inches=0.12)
+        )

@@ -2,13 +2,9 @@
 
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from engine.verification.accuracy.log_axes import label_decades
 from engine.verification.accuracy.pareto import pareto
@@ -21,9 +17,8 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
     """One panel a scene, one line a knob; a dashed line joins the runs that no other beats in both."""
     scenes = [name for name in TRADEOFFS if (runs["scene"] == name).any()]
     rows = -(-len(scenes) // COLUMNS)
-    figure, panels = plt.subplots(
-        rows, COLUMNS, figsize=(3.2 * COLUMNS, 2.9 * rows), layout="constrained", squeeze=False
-    )
+    figure = Figure(figsize=(3.2 * COLUMNS, 2.9 * rows), layout="constrained")
+    panels = figure.subplots(rows, COLUMNS, squeeze=False)
     for axes, name in zip(panels.flat, scenes, strict=False):
         _panel(axes, runs[runs["scene"] == name], name)
     for axes in panels.flat[len(scenes) :]:
@@ -31,7 +26,6 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
     knobs = {line.get_label(): line for axes in panels.flat for line in axes.get_lines()}
     figure.legend(knobs.values(), knobs.keys(), loc="outside lower center", ncols=COLUMNS)
     figure.savefig(path, dpi=80)
-    plt.close(figure)
 
 
 def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:

@@ -4,16 +4,13 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_rgb
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 CELL = (1.0, 0.55)
@@ -24,7 +21,7 @@ LETTERS = 14
 
 COLORS = {"stopped": "tab:orange", "failed": "tab:red", "energy not known": "0.8"}
 
-MAP, LOSS = plt.get_cmap("YlGnBu"), Normalize(0.0, 1.0)
+MAP, LOSS = colormaps["YlGnBu"], Normalize(0.0, 1.0)
 
 
 def draw(cases: pd.DataFrame, path: Path) -> None:
@@ -37,7 +34,8 @@ def draw(cases: pd.DataFrame, path: Path) -> None:
     groups = list(cases["group"].unique())
     columns = int(cases.groupby("group").size().max())
     size = (CELL[0] * columns + 2.2, CELL[1] * len(groups) + 0.8)
-    figure, axes = plt.subplots(figsize=size, layout="constrained")
+    figure = Figure(figsize=size, layout="constrained")
+    axes = figure.subplots()
     for row, group in enumerate(groups):
         for column, case in enumerate(cases[cases["group"] == group].itertuples()):
             _cell(axes, column, row, case)
@@ -50,7 +48,6 @@ def draw(cases: pd.DataFrame, path: Path) -> None:
     patches = [Patch(color=color, label=name) for name, color in COLORS.items()]
     axes.legend(handles=patches, loc="lower right", ncols=len(patches))
     figure.savefig(path, dpi=80)
-    plt.close(figure)
 
 
 def _cell(axes: Axes, column: int, row: int, case: Any) -> None:

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from analysis.__main__ import app, main
-from analysis.report.figures.angle import shape_versus_angle
+from analysis.report.figures import angle as shape_versus_angle
 from analysis.report.figures.surface import picture
 from analysis.report.products import plots
 from analysis.results.collect import collect
@@ -102,7 +102,7 @@ def test_series_are_told_apart_by_everything_but_velocity_angle_and_seed(tmp_pat
 def test_no_two_lines_look_alike(tmp_path: Path, velocities: list[float]) -> None:
     coords = {"velocity": velocities, "angle": [5.0], "friction": [0.4, 0.5, 0.6, 0.8]}
     results = collect(campaign(tmp_path, coords, grid(coords), 4 * len(velocities)))
-    lines = shape_versus_angle(results).legends[0].get_lines()[:-1]
+    lines = shape_versus_angle.draw(results, {}).legends[0].get_lines()[:-1]
     looks = {(tuple(line.get_color()), line.get_marker(), line.get_linestyle()) for line in lines}
     assert len(lines) == len(looks) == 4 * len(velocities)
     assert len({look[0] for look in looks}) == (4 if len(velocities) == 1 else 2)

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib import pyplot as plt
 
-from analysis.report.figures.angle import shape_versus_angle
+from analysis.report.figures import angle as shape_versus_angle
 from analysis.report.products import plots
 from analysis.results.collect import collect
 from analysis.results.error_bars import combine
@@ -132,8 +131,7 @@ def test_what_seeds_do_not_resolve_is_said() -> None:
 def test_figures_show_the_errors(tmp_path: Path) -> None:
     results, written = plots(campaign(tmp_path))
     assert len(written) == 6
-    figure = shape_versus_angle(results)
+    figure = shape_versus_angle.draw(results, {})
     bars = figure.axes[0].containers[0].lines[2][0].get_segments()
     lengths = [0.5 * (bar[1][1] - bar[0][1]) for bar in bars]
     np.testing.assert_allclose(lengths, results["b_over_a_error"].isel(velocity=0))
-    plt.close(figure)

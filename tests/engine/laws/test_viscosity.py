@@ -20,7 +20,7 @@ def states(count: int = 4000) -> tuple[Array, Array, Array]:
 
 def viscous(d: Array, rho: Array, c: Array, **coefficients: float) -> list[Array]:
     law = Viscosity(ViscosityCoefficients.model_validate(coefficients), DX)
-    return evaluate(law.stress, d, rho, c, outputs=((3, 3), ()))
+    return evaluate(law.stress, np.arange(len(d), dtype=np.int32), d, rho, c, outputs=((3, 3), ()))
 
 
 def parts(d: Array) -> tuple[Array, Array, Array]:
@@ -69,5 +69,5 @@ def test_viscosity_never_gives_work_back():
 def test_rigid_motion_and_inviscid_matter_bear_no_viscous_stress():
     d, rho, c = states(100)
     assert not viscous(np.zeros_like(d), rho, c, shear=NU, bulk=ZETA, shock_linear=LINEAR)[0].any()
-    stress, diffusivity = evaluate(Inviscid().stress, d, rho, c, outputs=((3, 3), ()))
+    stress, diffusivity = evaluate(Inviscid().stress, np.arange(100, dtype=np.int32), d, rho, c, outputs=((3, 3), ()))
     assert not stress.any() and not diffusivity.any()

@@ -1,0 +1,103 @@
+"""Contracts of the laws: what each gives, when in a step it is called, and which state of a particle it may change.
+
+`Constitution.update` calls them for one particle after its velocity gradient is known (g2p), in the order of this file.
+All methods are device functions. `p` is the index of the particle, by which a law reads and writes state of its own;
+`body` the index of its body, which fixes the material. A law that a scene leaves out has a twin without fields that
+does nothing; the contract is written here once for both.
+"""
+
+from typing import Protocol
+
+
+class EnergyLaw(Protocol):
+    """Specific internal energy E [J/kg] (engine/physics.md, section 2)."""
+
+    def after(self, p, work):
+        """Return E of particle p after work [J/kg] that is not yet added; zero where no energy is kept."""
+
+    def add(self, p, work):
+        """Add work [J/kg] to E of particle p; called last in the step, with the work of the mean stress."""
+
+
+class DamageLaw(Protocol):
+    """Damage D [-] (engine/physics.md, section 5)."""
+
+    def value(self, p):
+        """Return D of particle p, 0 to 1."""
+
+    def grow(self, p, s, P, dt, body):
+        """Break particle p further; called after the stress is known.
+
+        Args:
+            p: index of the particle.
+            s: deviatoric Cauchy stress [Pa].
+            P: pressure [Pa].
+            dt: time step [s].
+            body: index of the body.
+        """
+
+
+class GrowthLaw(Protocol):
+    """Growth of damage during a step (engine/physics.md, section 5)."""
+
+    def grow(self, root, s, P, dt, p, body):
+        """Return the cube root of D after a step; it never falls.
+
+        Args:
+            root: cube root of D before [-].
+            s: deviatoric Cauchy stress [Pa].
+            P: pressure [Pa].
+            dt: time step [s].
+            p: number of the particle in the scene, which does not change when particles are sorted.
+            body: index of the body.
+        """
+
+
+class ShearLaw(Protocol):
+    """Deviatoric stress, limited by a strength (engine/physics.md, sections 3 and 4)."""
+
+    def stress(self, p, H, growth, J, P, E, D, body):
+        """Return the deviatoric Kirchhoff stress [Pa] and store the elastic strain of particle p.
+
+        Args:
+            p: index of the particle.
+            H: displacement gradient dt L of the step [-].
+            growth: det(I + H) - 1 [-].
+            J: rho0/rho after the step [-].
+            P: pressure [Pa].
+            E: specific internal energy [J/kg].
+            D: damage [-].
+            body: index of the body.
+        """
+
+    def modulus(self, body):
+        """Return the shear modulus [Pa]; zero where there is no shear stress."""
+
+
+class StrengthLaw(Protocol):
+    """Largest shear stress (engine/physics.md, section 4)."""
+
+    def limit(self, p, P, E, D, body):
+        """Return the largest sqrt(J2) [Pa] of particle p; infinite where nothing limits it.
+
+        Args:
+            p: index of the particle.
+            P: pressure [Pa], positive in compression.
+            E: specific internal energy [J/kg].
+            D: damage [-].
+            body: index of the body.
+        """
+
+
+class ViscosityLaw(Protocol):
+    """Viscous stress (engine/physics.md, section 6)."""
+
+    def stress(self, p, d, rho, c):
+        """Return the viscous Cauchy stress [Pa], positive in tension, and the diffusivity [m^2/s].
+
+        Args:
+            p: index of the particle.
+            d: symmetric velocity gradient [1/s].
+            rho: density [kg/m^3].
+            c: speed of sound [m/s].
+        """
