@@ -1,36 +1,30 @@
-"""The one place that imports, starts and configures Taichi."""
+"""Configure and start Taichi; the types of all fields, in the precision of this process."""
 
 import os
 import time
 from contextlib import redirect_stdout, suppress
 from io import StringIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-
-os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
-
 import taichi as ti
-from taichi.lang import impl
-from taichi.lang.util import to_numpy_type
 
 from engine.device.options import VARIABLE, chosen
-from engine.device.source_positions import word_places_once
+from engine.device.source_positions import cache_source_positions
+from engine.device.taichi_internals import current_cfg, is_arch_supported, to_numpy_type
 from engine.errors import SceneError
 
 PRECISION = chosen()
 """Name of the precision of this process."""
 
 Real = {"f64": ti.f64, "f32": ti.f32}[PRECISION]
-"""Precision of every field and literal but time and place."""
+"""Precision of every field and literal but time and position."""
 
 EPSILON = float(np.finfo(to_numpy_type(Real)).eps)
-"""Spacing of its numbers at 1."""
+"""Spacing of the numbers of this precision at 1."""
 
 place3 = ti.types.vector(3, ti.f64)
-"""Positions are double: steps are so short against them that a single one would round away, the same way every time."""
+"""Positions are double: a step is so short against them that in single precision it would round away."""
 
 vec3 = ti.types.vector(3, Real)
 vec4 = ti.types.vector(4, Real)
@@ -57,9 +51,9 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
     Raises:
         SceneError: the asked device is not available.
     """
-    if arch == "cuda" and not ti.lang.misc.is_arch_supported(ti.cuda):
+    if arch == "cuda" and not is_arch_supported(ti.cuda):
         raise SceneError("--arch cuda: Taichi finds no CUDA device here; use --arch cpu")
-    word_places_once()
+    cache_source_positions()
     with redirect_stdout(StringIO()):  # ti.init prints a banner that no option silences
         ti.init(
             arch={"cpu": ti.cpu, "cuda": ti.cuda}[arch],
@@ -74,12 +68,12 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
 
 
 def wait() -> None:
-    """Let the device finish what it was given to do."""
+    """Wait until the device has finished all its work."""
     ti.sync()
 
 
 def require_precision(precision: str) -> None:
-    """Accept only the precision of this process.
+    """Check that a scene asks for the precision of this process.
 
     Raises:
         SceneError: the device modules were imported for another one.
@@ -93,26 +87,7 @@ def require_precision(precision: str) -> None:
 
 def on_gpu() -> bool:
     """Whether the running program works on a GPU."""
-    return bool(impl.current_cfg().arch != ti.cpu)
-
-
-def capacity(count: int) -> int:
-    """Size of a field for `count` entries: few sizes, so that scenes of many sizes share compiled kernels."""
-    return max(1024, 1 << (count - 1).bit_length())
-
-
-def filled(dtype: Any, values: NDArray[Any]) -> ti.Field:
-    """A one-dimensional field that begins with `values`; the rest is zero."""
-    field = ti.field(dtype, shape=capacity(len(values)))
-    overwrite(field, values)
-    return field
-
-
-def overwrite(field: Any, values: NDArray[Any]) -> None:
-    """Fill the first entries of a field with `values`, and the rest with zeros."""
-    padded = np.zeros((field.shape[0], *values.shape[1:]), dtype=to_numpy_type(field.dtype))
-    padded[: len(values)] = values
-    field.from_numpy(padded)
+    return bool(current_cfg().arch != ti.cpu)
 
 
 def _cache_directory() -> Path:

@@ -1,36 +1,38 @@
-"""Faster start: Taichi words the place in the source of every expression that it translates, and of each one anew.
+"""Cache the source positions that Taichi's compiler writes into its error messages.
 
-Kernels inline the same few functions many times over. Wording a place once takes half of a kernel's translation away.
+Taichi's compiler builds a text with file and line for every expression it translates, also where a function is inlined
+many times. Cached, a cold start takes half the translation time.
 """
 
 import ast
 from typing import Any
 
-from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
+from engine.device.taichi_internals import ASTTransformerContext
 
-Place = tuple[Any, ...]
+Key = tuple[Any, ...]
+"""File, line offset, function, kind and extent of a piece of source code."""
 
-_worded: dict[Place, str] = {}
-_word = ASTTransformerContext.get_pos_info
+_cache: dict[Key, str] = {}
+_build_text = ASTTransformerContext.get_pos_info
 
 
-def place_in_source(context: Any, node: ast.stmt | ast.expr) -> str:
-    """The file, line and text of a piece of code, as Taichi's error messages name them.
+def cache_source_positions() -> None:
+    """Replace Taichi's method that builds these texts, for the whole process."""
+    ASTTransformerContext.get_pos_info = source_position
+
+
+def source_position(context: Any, node: ast.stmt | ast.expr) -> str:
+    """Return file, line and text of a piece of code, as Taichi's error messages name them.
 
     Args:
         context: the function that is being translated.
         node: a piece of its code.
     """
     key = (context.file, context.lineno_offset, context.func.func.__name__, type(node), *_extent(node))
-    if key not in _worded:
-        _worded[key] = _word(context, node)
-    return _worded[key]
+    if key not in _cache:
+        _cache[key] = _build_text(context, node)
+    return _cache[key]
 
 
 def _extent(node: ast.stmt | ast.expr) -> tuple[int | None, ...]:
     return node.lineno, node.end_lineno, node.col_offset, node.end_col_offset
-
-
-def word_places_once() -> None:
-    """Let Taichi remember the places that it has worded."""
-    ASTTransformerContext.get_pos_info = place_in_source

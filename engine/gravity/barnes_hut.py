@@ -1,25 +1,26 @@
 """Gravity through a tree (engine/physics.md, section 7; Barnes & Hut 1986).
 
-A node's true bounding box decides whether it may act as a whole, so any distribution of particles will do.
+A node's true bounding box decides whether its multipole is accepted, so any distribution of particles is allowed.
 """
 
 from typing import Any
 
 import taichi as ti
 
-from engine.device.backend import TASK, capacity, on_gpu, vec3
+from engine.device.backend import TASK, on_gpu, vec3
+from engine.device.fields import capacity
 from engine.gravity.multipoles import Multipoles
 
 BATCH = 64
-"""Nodes that a group of targets collects before they act on it."""
+"""Accepted nodes that a group of targets collects before their field is summed."""
 
 
 @ti.data_oriented
-class Tree(Multipoles):
-    """Every group of targets walks the tree and takes each node as a whole where that is right.
+class BarnesHut(Multipoles):
+    """Tree walk: each group of targets accepts a node's multipole if the opening criterion holds, else opens the node.
 
-    On the CPU the particles of a leaf walk together, and nodes that act on them are collected: so the sums of a row of
-    targets stay in registers. On a GPU every particle walks alone. Arguments as `Multipoles`.
+    On the CPU the particles of a leaf walk together, and accepted nodes are collected: so the sums of a row of targets
+    stay in registers. On a GPU every particle walks alone. Arguments as `Multipoles`.
     """
 
     def __init__(self, particles: Any, radius: float, opening: float) -> None:
@@ -30,13 +31,13 @@ class Tree(Multipoles):
         self.acting = ti.field(ti.i32, capacity(walks * self.batch))
 
     def solve(self, potential: bool) -> None:
-        """Build the tree, then let every group of targets walk it."""
+        """Build the tree, then walk it for every group of targets."""
         self.build()
         self.walk_all(1 << self.depth, self.size, self.room, potential)
 
     @ti.kernel
     def walk_all(self, leaves: ti.i32, size: ti.i32, room: ti.i32, potential: ti.template()):
-        """Acceleration or potential of every particle."""
+        """Compute the acceleration or the potential of every particle."""
         if ti.static(self.by_leaf):
             for i in range(leaves * TASK):
                 if i % TASK == 0:
@@ -49,9 +50,9 @@ class Tree(Multipoles):
 
     @ti.func
     def walk(self, first, rows, lower, upper, leaves, size, room, potential: ti.template()):
-        """Sum over the whole tree for some rows of targets inside one box."""
+        """Sum over the whole tree for `rows` rows of targets inside one box."""
         for row in range(rows):
-            self.clear(first + row * self.lanes, potential)
+            self.reset(first + row * self.lanes, potential)
         begin = first // (rows * self.lanes) * self.batch
         end, node = begin, 1
         while node > 0:
@@ -73,7 +74,7 @@ class Tree(Multipoles):
 
     @ti.func
     def is_far(self, node, lower, upper):
-        """Whether a node may act as a whole on all targets in a box."""
+        """Opening criterion: whether the multipole of a node is accepted for all targets in a box."""
         c = self.centre[node]
         centre = vec3(c[0], c[1], c[2])
         gap = ti.max(ti.max(lower - centre, centre - upper), 0.0)
@@ -82,7 +83,7 @@ class Tree(Multipoles):
 
 @ti.func
 def following(node):
-    """The node to visit after a node and all below it; 0 after the last."""
+    """Next node of the walk after a node and all below it; 0 after the last."""
     n = node
     while n & 1 == 1:
         n >>= 1

@@ -1,4 +1,4 @@
-"""Gravity as a sum over all pairs: exact to round-off, and what the tree is measured against."""
+"""Gravity as a sum over all pairs, exact to round-off; the reference for the tree (engine/physics.md, section 7)."""
 
 from typing import Any
 
@@ -6,7 +6,8 @@ import numpy as np
 import taichi as ti
 
 from engine.device.backend import TASK, on_gpu
-from engine.gravity.self_gravity import LANES, Places, SelfGravity, Vectors
+from engine.gravity.interfaces import Indices, Vectors
+from engine.gravity.self_gravity import LANES, SelfGravity
 
 
 @ti.data_oriented
@@ -17,8 +18,8 @@ class DirectSum(SelfGravity):
         super().__init__(particles, radius, -(-particles.count // LANES) * LANES)
         self.task = 1 if on_gpu() else TASK
 
-    def arrange(self, x: Vectors) -> Places:
-        """Any order will do; the last row is filled up."""
+    def arrange(self, x: Vectors) -> Indices:
+        """Return the particles in their own order, and padding up to a whole row."""
         return np.concatenate([np.arange(len(x)), np.full(-len(x) % LANES, ~0)])
 
     def solve(self, potential: bool) -> None:
@@ -31,5 +32,5 @@ class DirectSum(SelfGravity):
         for i in range((count + self.lanes - 1) // self.lanes * self.task):
             if i % self.task == 0:
                 t = i // self.task * self.lanes
-                self.clear(t, potential)
+                self.reset(t, potential)
                 self.add_balls(0, count, t, potential)

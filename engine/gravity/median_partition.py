@@ -1,15 +1,14 @@
-"""Order of particles in a complete binary tree of equal halves."""
+"""Order of particles in a kd-tree cut at medians: a complete binary tree of equal halves."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Order = NDArray[np.int64]
+from engine.gravity.interfaces import Indices, Vectors
 
 
-def halve(x: NDArray[np.float64], levels: int, size: int) -> Order:
-    """Particles by leaf: every node is cut at the median along the longest side of its box.
+def median_order(x: Vectors, levels: int, size: int) -> Indices:
+    """Sort particles into leaves: every node is cut at the median along the longest side of its box.
 
-    All nodes of a level are cut at once. Copies of particles make up the number that 2^levels leaves hold.
+    All nodes of a level are cut at once. Copies of particles fill the 2^levels leaves up to their size.
 
     Args:
         x: positions [m], shape [particle_count, 3].
@@ -17,7 +16,7 @@ def halve(x: NDArray[np.float64], levels: int, size: int) -> Order:
         size: particles in a leaf, at least particle_count / 2^levels.
 
     Returns:
-        Index of the particle in every place of every leaf, or ~index for its copy; shape [2^levels, size].
+        Index of every particle of every leaf, or ~index for a copy; shape [2^levels, size].
     """
     copies = np.arange((size << levels) - len(x)) % len(x)
     order = np.concatenate([np.arange(len(x)), ~copies])

@@ -1,4 +1,4 @@
-"""Multipoles of groups of particles: their moments, and the pull of these (engine/physics.md, section 7).
+"""Monopole and quadrupole of groups of particles, and their field (engine/physics.md, section 7).
 
 The groups are the nodes of a complete binary tree: node 1 is the root, node n has the children 2n and 2n + 1, and each
 child holds half of its parent's particles, cut at the median along the longest side. So no node is empty, none refers
@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from engine.device.backend import Real, capacity, mat3, vec3, vec4, vec6
+from engine.device.backend import Real, mat3, vec3, vec4, vec6
+from engine.device.fields import capacity
 from engine.device.tensors import identity, pack, unpack
-from engine.gravity.median_partition import halve
-from engine.gravity.self_gravity import LANES, Places, SelfGravity, Vectors
+from engine.gravity.interfaces import Indices, Vectors
+from engine.gravity.median_partition import median_order
+from engine.gravity.self_gravity import LANES, SelfGravity
 
 LEAF = 24
 """Most particles in a leaf: three rows."""
@@ -22,13 +24,23 @@ LEAF = 24
 
 @ti.data_oriented
 class Multipoles(SelfGravity):
-    """Box, mass and quadrupole about the centre of mass of every node; what a walk over them has in common.
+    """Bounding box, mass and quadrupole about the centre of mass of every node of the tree.
 
     Args:
         particles: state of the particles.
-        radius: radius of the ball that stands for one particle [m].
-        opening: a node acts as a whole on targets that are farther from its centre of mass than its reach (the distance
-            to the farthest corner of its box) over `opening`; the error of its pull is then of the order opening^3.
+        radius: radius of the ball of a particle [m].
+        opening: opening angle [-]: the multipole of a node is accepted for targets farther from its centre of mass than
+            reach / opening, with the reach from there to the farthest corner of its box. The error is of the order
+            opening^3.
+
+    Attributes:
+        depth: levels below the root; the tree has 2^depth leaves.
+        size: particles in a leaf, copies included.
+        room: slots of a leaf, `size` filled up to whole rows.
+        lower, upper: corners of the box of every node.
+        centre: centre of mass of every node, and its gm as fourth component.
+        quadrupole: traceless quadrupole of every node, packed.
+        nearest: least distance from the centre of mass at which the multipole of a node is accepted.
     """
 
     def __init__(self, particles: Any, radius: float, opening: float) -> None:
@@ -42,40 +54,40 @@ class Multipoles(SelfGravity):
         self.centre, self.quadrupole = vec4.field(shape=shape), vec6.field(shape=shape)
         self.nearest = ti.field(Real, shape)
 
-    def arrange(self, x: Vectors) -> Places:
-        """Particles by leaf, each leaf filled up to whole rows."""
-        leaves = halve(x, self.depth, self.size)
-        nobody = np.minimum(leaves[:, :1], ~leaves[:, :1])
-        return np.concatenate([leaves, nobody.repeat(self.room - self.size, axis=1)], axis=1).ravel()
+    def arrange(self, x: Vectors) -> Indices:
+        """Return the particles leaf by leaf, each leaf padded to whole rows."""
+        leaves = median_order(x, self.depth, self.size)
+        padding = np.minimum(leaves[:, :1], ~leaves[:, :1])
+        return np.concatenate([leaves, padding.repeat(self.room - self.size, axis=1)], axis=1).ravel()
 
     def build(self) -> None:
-        """All nodes from the leaves up."""
+        """Compute all nodes, from the leaves up."""
         self.gather_leaves(1 << self.depth, self.size, self.room)
         for level in reversed(range(self.depth)):
             self.merge_level(1 << level)
 
     @ti.kernel
     def gather_leaves(self, leaves: ti.i32, size: ti.i32, room: ti.i32):
-        """Box, centre of mass and quadrupole of every leaf."""
+        """Compute box, centre of mass and quadrupole of every leaf."""
         for leaf in range(leaves):
             first = leaf * room
             lower, upper = self.point(first), self.point(first)
-            weight, mu = vec3(0.0), ti.cast(0.0, Real)
+            weight, gm = vec3(0.0), ti.cast(0.0, Real)
             for p in range(first, first + size):
                 lower, upper = ti.min(lower, self.point(p)), ti.max(upper, self.point(p))
-                weight += self.mu[p] * (self.point(p) - self.point(first))
-                mu += self.mu[p]
+                weight += self.gm[p] * (self.point(p) - self.point(first))
+                gm += self.gm[p]
             centre = self.point(first)
-            if mu > 0.0:
-                centre += weight / mu
+            if gm > 0.0:
+                centre += weight / gm
             Q = mat3(0.0)
             for p in range(first, first + size):
-                Q += quadrupole_of(self.mu[p], self.point(p) - centre)
-            self.set_node(leaves + leaf, lower, upper, centre, mu, Q)
+                Q += quadrupole_of(self.gm[p], self.point(p) - centre)
+            self.set_node(leaves + leaf, lower, upper, centre, gm, Q)
 
     @ti.kernel
     def merge_level(self, nodes: ti.i32):
-        """All nodes of one level from their children."""
+        """Compute all nodes of one level from their children (parallel-axis theorem)."""
         for n in range(nodes, 2 * nodes):
             a, b = self.centre[2 * n], self.centre[2 * n + 1]
             ca, cb = vec3(a[0], a[1], a[2]), vec3(b[0], b[1], b[2])
@@ -89,17 +101,20 @@ class Multipoles(SelfGravity):
             self.set_node(n, lower, upper, centre, a[3] + b[3], Q)
 
     @ti.func
-    def set_node(self, node, lower, upper, centre, mu, Q):
-        """Store a node; no target nearer than `nearest` to its centre may take it as a whole, or touch a ball of it."""
+    def set_node(self, node, lower, upper, centre, gm, Q):
+        """Store a node and the distance at which its multipole is accepted.
+
+        `nearest` is the larger of reach / opening and reach + radius: beyond the second no target is inside a ball.
+        """
         self.lower[node], self.upper[node] = lower, upper
-        self.centre[node] = vec4(centre[0], centre[1], centre[2], mu)
+        self.centre[node] = vec4(centre[0], centre[1], centre[2], gm)
         self.quadrupole[node] = pack(Q)
         reach = ti.max(centre - lower, upper - centre).norm()
         self.nearest[node] = ti.max(reach / self.opening[None], reach + self.radius[None])
 
     @ti.func
     def add_nodes(self, acting: ti.template(), begin, end, t, potential: ti.template()):
-        """Add the pull or the potential of the nodes in `acting`, from `begin` to `end`, to a row of targets."""
+        """Add the acceleration or the potential of the nodes acting[begin:end] to a row of targets."""
         if ti.static(potential):
             self.add_node_potential(acting, begin, end, t)
         else:
@@ -107,7 +122,7 @@ class Multipoles(SelfGravity):
 
     @ti.func
     def add_node_pull(self, acting: ti.template(), begin, end, t):
-        """With Q the quadrupole and d from the centre: (Q d - (mu d^2 + 5/2 d.Q d / d^2) d) / d^5."""
+        """Add (Q d - (gm d^2 + 5/2 d.Q d / d^2) d) / d^5, with the quadrupole Q and d from the centre of mass."""
         X, Y, Z = self.load(self.x, t), self.load(self.y, t), self.load(self.z, t)
         ax, ay, az = self.load(self.ax, t), self.load(self.ay, t), self.load(self.az, t)
         for i in range(begin, end):
@@ -127,7 +142,7 @@ class Multipoles(SelfGravity):
 
     @ti.func
     def add_node_potential(self, acting: ti.template(), begin, end, t):
-        """-mu / d - d.Q d / 2 d^5."""
+        """Add -gm / d - d.Q d / 2 d^5."""
         X, Y, Z = self.load(self.x, t), self.load(self.y, t), self.load(self.z, t)
         potential = self.load(self.potential, t)
         for i in range(begin, end):
@@ -141,7 +156,7 @@ class Multipoles(SelfGravity):
 
     @ti.func
     def point(self, p):
-        """Position of a particle [m]."""
+        """Position in slot p."""
         return vec3(self.x[p], self.y[p], self.z[p])
 
 
@@ -158,6 +173,6 @@ def row_product(Q, dx, dy, dz):
 
 
 @ti.func
-def quadrupole_of(mu, d):
+def quadrupole_of(gm, d):
     """Traceless quadrupole of a point mass at d."""
-    return mu * (3.0 * d.outer_product(d) - d.norm_sqr() * identity())
+    return gm * (3.0 * d.outer_product(d) - d.norm_sqr() * identity())

@@ -1,32 +1,36 @@
-"""Net force and torque, which forces between pairs do not have and those of a tree do."""
+"""Remove the net force and torque of accelerations computed by a tree.
+
+Forces between pairs cancel in the sum. Those of a tree do not: a node acts on a particle, not the particle on the node
+(engine/physics.md, section 7).
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Vectors = NDArray[np.float64]
+from engine.gravity.interfaces import Scalars, Vectors
 
 TINY = 1e-300
+"""Least denominator of a fraction, so that particles at rest give 0."""
 
 
 @dataclass(frozen=True)
-class NetEffect:
-    """What a solver's pulls would do to all particles together, though forces between pairs do nothing.
+class NetForce:
+    """Relative net force and torque of accelerations.
 
     Attributes:
-        force: net force over the sum of the magnitudes of all forces.
-        torque: net torque over the sum of all forces times distances from the centre of mass.
+        force: |sum of forces| over the sum of their magnitudes [-].
+        torque: |sum of torques| over the sum of forces times distances from the centre of mass [-].
     """
 
     force: float
     torque: float
 
 
-def without_net_effect(pull: Vectors, x: Vectors, mass: Vectors) -> tuple[Vectors, NetEffect]:
-    """Accelerations without net force and net torque, which no forces between pairs have.
+def remove_net_force_and_torque(pull: Vectors, x: Vectors, mass: Scalars) -> tuple[Vectors, NetForce]:
+    """Subtract the rigid motion, a + omega x r, that carries the net force and torque.
 
-    Of all corrections that achieve this, the rigid motion taken out is the smallest in the mass-weighted mean square.
+    Of all corrections that cancel both it is the smallest in the mass-weighted mean square.
 
     Args:
         pull: accelerations [m/s^2], shape [particle_count, 3].
@@ -34,7 +38,7 @@ def without_net_effect(pull: Vectors, x: Vectors, mass: Vectors) -> tuple[Vector
         mass: masses [kg], shape [particle_count].
 
     Returns:
-        The accelerations [m/s^2], shape [particle_count, 3], and what was taken out.
+        The accelerations [m/s^2], shape [particle_count, 3], and the net force and torque removed.
     """
     r = x - np.average(x, axis=0, weights=mass)
     lever = mass[:, None] * r
@@ -44,12 +48,12 @@ def without_net_effect(pull: Vectors, x: Vectors, mass: Vectors) -> tuple[Vector
     torque = np.array([turning[1, 2] - turning[2, 1], turning[2, 0] - turning[0, 2], turning[0, 1] - turning[1, 0]])
     spin = np.linalg.pinv(np.trace(moments) * np.eye(3) - moments, hermitian=True) @ torque
     force, arm = mass * _length(pull), _length(r)
-    taken_out = NetEffect(
+    removed = NetForce(
         force=float(mass.sum() * np.linalg.norm(mean) / max(force.sum(), TINY)),
         torque=float(np.linalg.norm(torque) / max((force * arm).sum(), TINY)),
     )
-    return rest - np.cross(spin, r), taken_out
+    return rest - np.cross(spin, r), removed
 
 
-def _length(vectors: Vectors) -> Vectors:
+def _length(vectors: Vectors) -> Scalars:
     return np.asarray(np.sqrt(np.einsum("pi,pi->p", vectors, vectors)))

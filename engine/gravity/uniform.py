@@ -1,4 +1,4 @@
-"""Gravity that is the same everywhere, or none (engine/physics.md, section 11)."""
+"""Uniform gravity, or none (engine/physics.md, section 11)."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from engine.scene.fields import Vector
 
 @ti.data_oriented
 class UniformGravity:
-    """One acceleration for all particles, for ever.
+    """The same constant acceleration for all particles.
 
     Args:
         particles: state of the particles.
@@ -28,20 +28,20 @@ class UniformGravity:
         return self.pull[None]
 
     def energy(self) -> float:
-        """Potential energy [J] of the particles where they are, relative to the origin."""
+        """Return the potential energy [J] of the particles, -sum of m g.x: zero at the origin."""
         state = self.particles.read("x", "mass")
         return -float(np.sum(state["mass"] * (state["x"] @ self.pull.to_numpy())))
 
 
 @ti.data_oriented
-class Weightless:
-    """No gravity."""
+class NoGravity:
+    """No gravity: zero acceleration and energy."""
 
     @ti.func
     def at(self, p):
-        """None."""
+        """Acceleration of particle p: 0."""
         return vec3(0.0)
 
     def energy(self) -> float:
-        """None."""
+        """Return 0."""
         return 0.0

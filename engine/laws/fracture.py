@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import taichi as ti
 
-from engine.device.backend import Real, filled
+from engine.device.backend import Real
+from engine.device.fields import filled, per_body
 from engine.device.tensors import largest_eigenvalue, norm_squared
 from engine.laws.flaws import Flaws
 from engine.scene.bodies import Body
@@ -23,11 +24,10 @@ class Fracture:
 
     def __init__(self, bodies: Sequence[Body], rule: FractureRules, flaws: Flaws) -> None:
         self.per_flaw = rule.per_flaw
-        self.table = ti.types.struct(modulus=Real, rate=Real).field(shape=len(bodies))
-        for i, body in enumerate(bodies):
-            self.table.modulus[i] = _strain_modulus(rule, body.material)
-            crack_speed = rule.growth_speed * body.material.longitudinal_speed
-            self.table.rate[i] = crack_speed / (rule.growth_range * body.spacing)
+        self.table = per_body(
+            modulus=[_strain_modulus(rule, body.material) for body in bodies],
+            rate=[_growth_rate(rule, body) for body in bodies],
+        )
         self.first = filled(ti.i32, flaws.first)
         self.strain = filled(Real, flaws.strain)
 
@@ -64,6 +64,12 @@ class Unbreakable:
     def grow(self, root, s, P, dt, p, body):
         """Return `root`."""
         return root
+
+
+def _growth_rate(rule: FractureRules, body: Body) -> float:
+    """Growth of the cube root of damage by one crack [1/s]: crack speed over the range of growth."""
+    crack_speed = rule.growth_speed * body.material.longitudinal_speed
+    return crack_speed / (rule.growth_range * body.spacing)
 
 
 def _strain_modulus(rule: FractureRules, material: Material) -> float:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import taichi as ti
 
 from engine.device.backend import Real, mat3, vec6
+from engine.device.fields import per_body
 from engine.device.tensors import (
     deviator,
     exp_minus_identity,
@@ -61,9 +62,7 @@ class Hencky:
 
     def __init__(self, particles: Particles, strength: StrengthLaw, materials: Sequence[Material]) -> None:
         self.b_minus_I, self.strength = particles.require("b_minus_I"), strength
-        self.table = ti.types.struct(modulus=Real).field(shape=len(materials))
-        for i, material in enumerate(materials):
-            self.table.modulus[i] = material.shear_modulus
+        self.table = per_body(modulus=[material.shear_modulus for material in materials])
 
     @ti.func
     def stress(self, p, A, growth, J, P, E, D, body):

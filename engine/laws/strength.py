@@ -6,6 +6,7 @@ import taichi as ti
 import taichi.math as tm
 
 from engine.device.backend import Real
+from engine.device.fields import per_body
 from engine.scene.material import Material
 
 
@@ -19,10 +20,7 @@ class Strength:
 
     def __init__(self, materials: Sequence[Material]) -> None:
         constants = ("cohesion", "intact_friction", "strength_limit", "melt_energy", "damaged_friction")
-        self.table = ti.types.struct(**dict.fromkeys(constants, Real)).field(shape=len(materials))
-        for i, material in enumerate(materials):
-            for name in constants:
-                getattr(self.table, name)[i] = getattr(material, name)
+        self.table = per_body(**{name: [getattr(material, name) for material in materials] for name in constants})
 
     @ti.func
     def limit(self, p, P, E, D, body):

@@ -11,7 +11,8 @@ import numpy as np
 import taichi as ti
 import taichi.math as tm
 
-from engine.device.backend import EPSILON, TASK, Real, capacity, mat3, on_gpu, overwrite, vec3, vec4
+from engine.device.backend import EPSILON, TASK, Real, mat3, on_gpu, vec3, vec4
+from engine.device.fields import capacity, overwrite
 from engine.device.tensors import determinant_increment, identity, norm_squared, symmetric, unpack
 from engine.mpm.blocks import Blocks
 from engine.mpm.spline import moments, own_share, spline_weights

@@ -1,4 +1,4 @@
-"""What the steps of a scene cost, measured by running some in memory."""
+"""Measure the wall and CPU time of the steps of a scene by running some in memory."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -17,7 +17,7 @@ from engine.simulation.simulation import Simulation
 
 @dataclass
 class Cost:
-    """Time of repeated work.
+    """Time of a repeated task.
 
     Attributes:
         calls: how often it ran.
@@ -41,13 +41,13 @@ class Cost:
 
 @dataclass
 class Measurement:
-    """Steps of a scene, and what they took.
+    """Steps of a scene and their cost.
 
     Attributes:
         simulation: in the state after them.
-        begun: simulated time [s] of the first.
+        begun: simulated time [s] before the first.
         steps: how many were measured.
-        whole: cost of all of them, with everything between.
+        whole: cost of all of them, kernels and host.
         kernels: cost of every kernel that ran, by part and name.
     """
 
@@ -97,7 +97,7 @@ def _begun(scene: Scene, source: Path) -> Simulation:
 
 
 def _watch(result: Measurement) -> None:
-    """Let every kernel of the simulation's parts add to its cost when it runs."""
+    """Replace every kernel of the simulation's parts by one that adds its time to the result."""
     for part in parts_of(result.simulation):
         for name in part.kernels:
             cost = result.kernels[part.name, name] = Cost()

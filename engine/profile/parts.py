@@ -1,4 +1,4 @@
-"""What the parts of a simulation hold on the device and run there, found by looking at them."""
+"""Fields and kernels of the parts of a simulation, found from their attributes."""
 
 import inspect
 from collections.abc import Iterator
@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
-from taichi.lang.field import Field
-from taichi.lang.struct import StructField
-from taichi.lang.util import to_numpy_type
+
+from engine.device.taichi_internals import Field, StructField, is_kernel, to_numpy_type
 
 
 @dataclass(frozen=True)
@@ -18,7 +17,7 @@ class Part:
     """One part of a simulation.
 
     Attributes:
-        name: attribute that holds it.
+        name: attribute of the object that owns it.
         content: the part itself.
         fields: its fields by name, less those that belong to a part inside it or beside it.
         kernels: names of its kernels.
@@ -31,12 +30,12 @@ class Part:
 
     @property
     def left_out(self) -> bool:
-        """Whether it only stands for what the scene does without."""
+        """Whether it has neither fields nor kernels: the null part of physics that the scene leaves out."""
         return not (self.fields or self.kernels)
 
 
 def parts_of(simulation: Any) -> list[Part]:
-    """Every part, outer ones first; a field that several hold is the innermost's."""
+    """Return all parts, outer ones first; a field shared by several belongs to the innermost."""
     parts: list[Part] = []
     claimed: set[int] = set()
     for name, content in reversed(list(_walk(simulation))):
@@ -47,17 +46,17 @@ def parts_of(simulation: Any) -> list[Part]:
 
 
 def own_fields(content: Any) -> dict[str, Any]:
-    """Fields that are attributes of an object, by name."""
+    """Return the fields among the attributes of an object, by name."""
     return {name: value for name, value in vars(content).items() if isinstance(value, Field)}
 
 
 def allocated_bytes(field: Any) -> int:
-    """Memory of a field."""
+    """Memory of a field [bytes]."""
     return int(prod(field.shape)) * entry_bytes(field)
 
 
 def entry_bytes(field: Any) -> int:
-    """Memory of one entry of a field."""
+    """Memory of one entry of a field [bytes]."""
     if isinstance(field, StructField):
         return sum(entry_bytes(field.get_member_field(key)) for key in field.keys)
     components = getattr(field, "n", 1) * getattr(field, "m", 1)
@@ -81,4 +80,4 @@ def _is_part(value: Any) -> bool:
 
 def _kernels(content: Any) -> tuple[str, ...]:
     kind = type(content)
-    return tuple(name for name in dir(kind) if hasattr(inspect.getattr_static(kind, name), "_is_wrapped_kernel"))
+    return tuple(name for name in dir(kind) if is_kernel(inspect.getattr_static(kind, name)))

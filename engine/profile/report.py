@@ -1,4 +1,4 @@
-"""What a scene uses, what it leaves out, and what each part of it costs: `python -m engine explain SCENE`."""
+"""Tables of the parts of a scene, their memory and their time: `python -m engine explain SCENE`."""
 
 from itertools import chain, repeat, zip_longest
 
@@ -11,7 +11,7 @@ from engine.profile.parts import Part, allocated_bytes, parts_of
 
 
 def report(result: Measurement) -> RenderableType:
-    """The parts of a measured scene as a table, under it what is left out."""
+    """Return the parts of a measured scene as a table, and below it what the scene leaves out."""
     simulation, physics = result.simulation, result.simulation.scene.physics
     heading = (
         f"{simulation.particles.count:,} particles in {int(simulation.transfer.block_count[None]):,} blocks; "
@@ -72,7 +72,7 @@ def _per_step(result: Measurement, seconds: float) -> float:
 
 
 def size(count: float) -> str:
-    """Bytes in a unit that suits them."""
+    """Format bytes in the unit that gives a number below 1024."""
     for unit in ("B", "KiB", "MiB"):
         if count < 1024.0:
             return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"

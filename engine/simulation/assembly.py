@@ -3,10 +3,10 @@
 What a scene leaves out is stood for by a part that holds no field and does nothing, so it costs nothing.
 """
 
-from engine.gravity.barnes_hut import Tree
+from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
-from engine.gravity.self_gravity import SelfGravity
-from engine.gravity.uniform import UniformGravity, Weightless
+from engine.gravity.interfaces import Gravity
+from engine.gravity.uniform import NoGravity, UniformGravity
 from engine.laws.algebraic import Algebraic
 from engine.laws.constitution import Constitution
 from engine.laws.damage import Damage, Intact
@@ -38,13 +38,13 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
     )
 
 
-def gravity(scene: Scene, particles: Particles) -> SelfGravity | UniformGravity | Weightless:
+def gravity(scene: Scene, particles: Particles) -> Gravity:
     """The pull on every particle; self-gravity by a tree, or as the sum over all pairs at opening 0."""
     physics = scene.physics
     if physics.gravity:
         radius, opening = physics.gravity.softening * scene.spacing, physics.gravity.opening
-        return Tree(particles, radius, opening) if opening > 0.0 else DirectSum(particles, radius)
-    return UniformGravity(particles, physics.uniform_gravity) if physics.uniform_gravity else Weightless()
+        return BarnesHut(particles, radius, opening) if opening > 0.0 else DirectSum(particles, radius)
+    return UniformGravity(particles, physics.uniform_gravity) if physics.uniform_gravity else NoGravity()
 
 
 def walls(scene: Scene) -> Walls | None:

@@ -6,7 +6,8 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.device.backend import Real, capacity, mat3, overwrite, place3, vec3, vec6
+from engine.device.backend import Real, mat3, place3, vec3, vec6
+from engine.device.fields import capacity, overwrite
 
 Arrays = dict[str, NDArray[Any]]
 

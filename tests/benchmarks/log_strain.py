@@ -8,7 +8,8 @@ from rich.console import Console
 from rich.table import Table
 
 from engine.device import backend
-from engine.device.backend import mat3, overwrite, vec3, vec6
+from engine.device.backend import mat3, vec3, vec6
+from engine.device.fields import overwrite
 from engine.device.tensors import deviator, half_log, unpack
 from engine.state.particles import Arrays
 from tests.benchmarks.stopwatch import Stopwatch

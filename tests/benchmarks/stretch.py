@@ -9,7 +9,8 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from engine.device.backend import mat3, overwrite, vec3
+from engine.device.backend import mat3, vec3
+from engine.device.fields import overwrite
 from engine.device.tensors import identity, pack, unpack
 from engine.laws.constitution import Constitution, ddot, strain_increment
 from engine.laws.strength import return_factor

@@ -4,11 +4,11 @@ from typing import Any
 
 import taichi as ti
 
-from engine.gravity.barnes_hut import Tree
+from engine.gravity.barnes_hut import BarnesHut
 
 
 @ti.data_oriented
-class Monopoles(Tree):
+class Monopoles(BarnesHut):
     """A tree whose nodes act without their quadrupoles, which are still computed; arguments as `Multipoles`."""
 
     def build(self) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.constants import G_NEWTON
-from engine.gravity.barnes_hut import Tree
+from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
 from tests.benchmarks.gravity.states import State
 from tests.helpers.monopoles import Monopoles
@@ -35,7 +35,7 @@ class Ours(Code):
 
     def __init__(self, state: State, quadrupole: bool) -> None:
         self.particles, self.radius = state.particles(), state.radius
-        self.tree = (Tree if quadrupole else Monopoles)(self.particles, self.radius, 1.0)
+        self.tree = (BarnesHut if quadrupole else Monopoles)(self.particles, self.radius, 1.0)
 
     def exact(self) -> Pull:
         return DirectSum(self.particles, self.radius).pull(0.0)

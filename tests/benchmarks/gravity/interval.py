@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.device import backend
 from engine.gravity import self_gravity
-from engine.gravity.net_force import without_net_effect
+from engine.gravity.net_force import remove_net_force_and_torque
 from engine.scene.collision import Collision
 from engine.scene.scene import Gravity
 from engine.simulation.simulation import Simulation
@@ -19,9 +19,9 @@ def measure(interval: float, corrected: bool) -> dict[str, Any]:
     """Drift of energy and angular momentum of a (100 m/s, 15 deg) collision; `corrected` as the engine does it."""
     backend.start(threads=1)
     if not corrected:
-        self_gravity.without_net_effect = lambda pull, x, mass: (
+        self_gravity.remove_net_force_and_torque = lambda pull, x, mass: (
             pull,
-            without_net_effect(pull, x, mass)[1],
+            remove_net_force_and_torque(pull, x, mass)[1],
         )
     gravity = Gravity(interval=interval)
     collision = Collision(velocity=100.0, angle=15.0, particles=PARTICLES, end_time=AFTER_CONTACT, gravity=gravity)

@@ -7,7 +7,7 @@ from typing import Any
 
 import xarray as xr
 
-from engine.gravity.barnes_hut import Tree
+from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
 from engine.gravity.self_gravity import SelfGravity
 from engine.job.session import Options, run_job
@@ -66,7 +66,7 @@ def watched(kind: type, name: str) -> Stopwatch:
 def error_of_defaults(state: State) -> dict[str, float]:
     """Relative errors of the accelerations that a simulation uses, with the default opening."""
     particles = state.particles()
-    Tree(particles, state.radius, Gravity().opening).accelerate(0.0)
+    BarnesHut(particles, state.radius, Gravity().opening).accelerate(0.0)
     used = particles.read("acceleration")["acceleration"]
     return error(used, DirectSum(particles, state.radius).pull(0.0))
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from engine.device import backend
-from engine.gravity.barnes_hut import Tree
+from engine.gravity.barnes_hut import BarnesHut
 from engine.scene.scene import Gravity
 from tests.benchmarks.child import answer
 from tests.benchmarks.gravity.states import along_curve, sphere
@@ -17,7 +17,7 @@ def measure(count: int) -> dict[str, Any]:
     backend.start(threads=1)
     state = along_curve(sphere(count))
     particles = state.particles()
-    tree = Tree(particles, state.radius, Gravity().opening)
+    tree = BarnesHut(particles, state.radius, Gravity().opening)
     tree.accelerate(0.0)
     watches = {"arrange": Stopwatch(), "solve": Stopwatch(), "accelerate": Stopwatch()}
     for _ in range(LAPS):

@@ -7,7 +7,7 @@ import taichi as ti
 from engine.constants import G_NEWTON
 from engine.device.backend import PRECISION, mat3
 from engine.errors import GuardFault
-from engine.gravity.barnes_hut import Tree
+from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
 from engine.job.snapshot import FIELDS, snapshot
 from engine.mpm.transfer import affine_velocity
@@ -59,7 +59,7 @@ def test_gravity_of_bodies_of_any_size(R, opening):
     mass = np.full(2 * count, 2700.0 * h**3)
     particles = Particles(2 * count)
     particles.write({"x": x, "mass": mass, "v": np.zeros_like(x)})
-    solver = Tree(particles, h, opening) if opening else DirectSum(particles, h)
+    solver = BarnesHut(particles, h, opening) if opening else DirectSum(particles, h)
     exact = pulls(x, mass, h)
     error = np.linalg.norm(solver.pull(0.0) - exact, axis=1) / np.linalg.norm(exact, axis=1)
     assert np.percentile(error, 99) < (5e-3 if opening else 1e-4)

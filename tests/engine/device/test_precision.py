@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from engine.__main__ import application
+from engine.cli import application
 from engine.device.backend import require_precision
 from engine.device.options import VARIABLE, chosen
 from engine.errors import ExitCode, SceneError

@@ -3,7 +3,7 @@
 import pytest
 import taichi as ti
 
-from engine.device import source_positions as translation
+from engine.device import source_positions
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -39,19 +39,21 @@ def error() -> str:
     return str(raised.value)
 
 
-def test_a_place_is_worded_once_however_often_its_code_is_inlined(monkeypatch: pytest.MonkeyPatch) -> None:
-    worded = []
-    monkeypatch.setattr(translation, "_worded", {})
-    word = translation._word
-    monkeypatch.setattr(translation, "_word", lambda context, node: worded.append(node) or word(context, node))
+def test_a_source_position_is_built_once_however_often_its_code_is_inlined(monkeypatch: pytest.MonkeyPatch) -> None:
+    built = []
+    monkeypatch.setattr(source_positions, "_cache", {})
+    build = source_positions._build_text
+    monkeypatch.setattr(
+        source_positions, "_build_text", lambda context, node: built.append(node) or build(context, node)
+    )
     assert translate(1) == 0.5
-    once = len(worded)
+    once = len(built)
     assert translate(8) == 2.0**-8
-    assert once > 10 and len(worded) == once
+    assert once > 10 and len(built) == once
 
 
-def test_errors_name_the_same_place_as_without(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_name_the_same_position_as_without_a_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = error(), error()
-    monkeypatch.setattr(translation.ASTTransformerContext, "get_pos_info", translation._word)
+    monkeypatch.setattr(source_positions.ASTTransformerContext, "get_pos_info", source_positions._build_text)
     assert first == second == error()
-    assert "nowhere" in first and "test_translation.py" in first
+    assert "nowhere" in first and "test_source_positions.py" in first

@@ -6,7 +6,7 @@ import pytest
 import engine.gravity.barnes_hut
 from engine.constants import G_NEWTON
 from engine.device import backend
-from engine.gravity.barnes_hut import Tree
+from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
 from engine.gravity.self_gravity import SelfGravity
 from engine.scene.placement import sphere_points
@@ -47,18 +47,18 @@ def clustered(count: int) -> Array:
 def test_a_vanishing_opening_gives_the_sum_over_all_pairs(points) -> None:
     particles = with_particles(points(1500))
     exact = DirectSum(particles, RADIUS).pull(0.0)
-    assert error(Tree(particles, RADIUS, 1e-9), exact).max() < 1e-11
-    assert error(Tree(particles, RADIUS, 0.5), exact).max() > 1e-5
+    assert error(BarnesHut(particles, RADIUS, 1e-9), exact).max() < 1e-11
+    assert error(BarnesHut(particles, RADIUS, 0.5), exact).max() > 1e-5
 
 
 @pytest.mark.parametrize("points", [uniform, clustered])
 def test_the_default_opening_is_right_to_half_a_percent(points) -> None:
     particles = with_particles(points(4000))
     exact = DirectSum(particles, RADIUS).pull(0.0)
-    assert np.percentile(error(Tree(particles, RADIUS, Gravity().opening), exact), 99) < 5e-3
+    assert np.percentile(error(BarnesHut(particles, RADIUS, Gravity().opening), exact), 99) < 5e-3
 
 
-@pytest.mark.parametrize(("solver", "order"), [(Monopoles, 2.0), (Tree, 3.0)])
+@pytest.mark.parametrize(("solver", "order"), [(Monopoles, 2.0), (BarnesHut, 3.0)])
 def test_the_error_falls_with_the_first_power_of_the_opening_that_is_left_out(solver, order) -> None:
     """About the centre of mass a monopole leaves the quadrupole, second order in size over distance, and so on."""
     particles = with_particles(uniform(16000))
@@ -69,7 +69,7 @@ def test_the_error_falls_with_the_first_power_of_the_opening_that_is_left_out(so
     assert order - 0.3 < fitted < order + 1.2
 
 
-@pytest.mark.parametrize(("solver", "order"), [(Monopoles, 2.0), (Tree, 3.0)])
+@pytest.mark.parametrize(("solver", "order"), [(Monopoles, 2.0), (BarnesHut, 3.0)])
 def test_a_cloud_that_acts_as_one_node_is_wrong_by_the_first_moment_left_out(solver, order) -> None:
     generator = np.random.default_rng(6)
     cloud, probes = generator.exponential(size=(512, 3)) * [1.0, 1.0, 3.0], generator.uniform(-1.0, 1.0, (512, 3))
@@ -95,7 +95,7 @@ def pull_and_potential(gravity: SelfGravity) -> tuple[Array, Array]:
 def test_the_quadrupole_earns_its_place() -> None:
     particles = with_particles(uniform(4000))
     exact = DirectSum(particles, RADIUS).pull(0.0)
-    with_it, without = (np.median(error(solver(particles, RADIUS, 0.5), exact)) for solver in (Tree, Monopoles))
+    with_it, without = (np.median(error(solver(particles, RADIUS, 0.5), exact)) for solver in (BarnesHut, Monopoles))
     assert with_it < 0.3 * without
 
 
@@ -103,7 +103,7 @@ def test_one_and_two_threads_give_the_same_bits() -> None:
     results = []
     for threads in (1, 2):
         backend.start(threads=threads)
-        tree = Tree(with_particles(clustered(3000)), RADIUS, 0.4)
+        tree = BarnesHut(with_particles(clustered(3000)), RADIUS, 0.4)
         results.append((tree.pull(0.0), tree.energy()))
     assert np.array_equal(results[0][0], results[1][0])
     assert results[0][1] == results[1][1]
@@ -111,22 +111,22 @@ def test_one_and_two_threads_give_the_same_bits() -> None:
 
 def test_nodes_are_collected_in_batches_of_any_size(monkeypatch) -> None:
     particles = with_particles(uniform(3000))
-    usual = Tree(particles, RADIUS, 0.3).pull(0.0)
+    usual = BarnesHut(particles, RADIUS, 0.3).pull(0.0)
     for batch in (1, 7, 4096):
         monkeypatch.setattr(engine.gravity.barnes_hut, "BATCH", batch)
-        np.testing.assert_allclose(Tree(particles, RADIUS, 0.3).pull(0.0), usual, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(BarnesHut(particles, RADIUS, 0.3).pull(0.0), usual, rtol=1e-12, atol=1e-12)
 
 
 def test_the_energy_agrees_with_the_sum_over_all_pairs() -> None:
     particles = with_particles(clustered(3000))
-    assert Tree(particles, RADIUS, 0.5).energy() == pytest.approx(DirectSum(particles, RADIUS).energy(), rel=2e-4)
+    assert BarnesHut(particles, RADIUS, 0.5).energy() == pytest.approx(DirectSum(particles, RADIUS).energy(), rel=2e-4)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 15, 16, 17, 100])
 def test_any_number_of_particles_will_do(count: int) -> None:
     particles = with_particles(np.random.default_rng(count).normal(size=(count, 3)))
     exact = DirectSum(particles, RADIUS).pull(0.0)
-    np.testing.assert_allclose(Tree(particles, RADIUS, 1e-9).pull(0.0), exact, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(BarnesHut(particles, RADIUS, 1e-9).pull(0.0), exact, rtol=1e-11, atol=1e-12)
 
 
 def test_particles_in_one_place_or_in_a_line_will_do() -> None:
@@ -134,8 +134,8 @@ def test_particles_in_one_place_or_in_a_line_will_do() -> None:
     for x in (np.ones((100, 3)), np.concatenate([np.zeros((50, 3)), np.ones((50, 3))]), line):
         particles = with_particles(x)
         exact = DirectSum(particles, RADIUS).pull(0.0)
-        np.testing.assert_allclose(Tree(particles, RADIUS, 1e-9).pull(0.0), exact, rtol=1e-11, atol=1e-10)
-        difference = np.abs(Tree(particles, RADIUS, 0.5).pull(0.0) - exact)
+        np.testing.assert_allclose(BarnesHut(particles, RADIUS, 1e-9).pull(0.0), exact, rtol=1e-11, atol=1e-10)
+        difference = np.abs(BarnesHut(particles, RADIUS, 0.5).pull(0.0) - exact)
         assert np.median(difference) <= 5e-3 * np.abs(exact).mean()
 
 
@@ -143,12 +143,12 @@ def test_unequal_masses_keep_their_weight() -> None:
     x = uniform(2000)
     particles = with_particles(x, np.random.default_rng(5).uniform(0.1, 100.0, 2000) / G_NEWTON)
     exact = DirectSum(particles, RADIUS).pull(0.0)
-    assert np.percentile(error(Tree(particles, RADIUS, 0.5), exact), 99) < 5e-3
+    assert np.percentile(error(BarnesHut(particles, RADIUS, 0.5), exact), 99) < 5e-3
 
 
 def test_gravity_adds_no_momentum_and_no_angular_momentum() -> None:
     particles = with_particles(clustered(1000))
-    taken_out = Tree(particles, RADIUS, 0.8).accelerate(0.0)
+    taken_out = BarnesHut(particles, RADIUS, 0.8).accelerate(0.0)
     assert 1e-8 < taken_out.force < 1e-2 and 1e-8 < taken_out.torque < 1e-2
     state = particles.read("x", "acceleration", "mass")
     force = state["mass"][:, None] * state["acceleration"]

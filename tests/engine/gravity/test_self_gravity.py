@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from engine.gravity.barnes_hut import Tree
+from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
 from engine.scene.placement import sphere_points
 from engine.state.particles import Particles
@@ -102,7 +102,7 @@ def test_a_homogeneous_sphere_pulls_linearly_inside_and_as_a_point_outside(openi
     probes *= (r / lengths(probes))[:, None]
     x = np.concatenate([sphere, probes])
     mass = np.concatenate([np.full(count, M / count), np.zeros(400)])
-    solver = Tree(at(x, mass), h, opening) if opening else DirectSum(at(x, mass), h)
+    solver = BarnesHut(at(x, mass), h, opening) if opening else DirectSum(at(x, mass), h)
     a = solver.pull(0.0)[count:]
     expected = -G_N * M * probes / np.maximum(r, R)[:, None] ** 3
     inside, outside = r < R, r > R

@@ -70,13 +70,13 @@ def field_names(simulation: Simulation) -> set[str]:
 
 
 PARTS = {
-    "energy": ("E", ["energy.InternalEnergy", "tillotson.condensed"]),
-    "shear": ("b_minus_I", ["shear.Hencky", "shear.deform", "tensors.half_log"]),
-    "strength": (None, ["strength.Strength"]),
-    "fracture": ("damage_root", ["fracture.", "damage.Damage", "tensors.largest_eigenvalue"]),
-    "gravity": ("acceleration", ["tree.", "gravity.SelfGravity"]),
-    "viscosity": (None, ["viscosity.Viscosity"]),
-    "walls": (None, ["walls."]),
+    "energy": ("E", ["laws.energy.InternalEnergy", "laws.tillotson.condensed"]),
+    "shear": ("b_minus_I", ["laws.shear.Hencky", "laws.shear.deform", "device.tensors.half_log"]),
+    "strength": (None, ["laws.strength.Strength"]),
+    "fracture": ("damage_root", ["laws.fracture.", "laws.damage.Damage", "device.tensors.largest_eigenvalue"]),
+    "gravity": ("acceleration", ["gravity.barnes_hut.", "gravity.multipoles.", "gravity.self_gravity."]),
+    "viscosity": (None, ["laws.viscosity.Viscosity"]),
+    "walls": (None, ["mpm.walls."]),
 }
 """Particle field and code of every part of the physics."""
 

@@ -5,7 +5,7 @@ import pytest
 import taichi as ti
 from typer.testing import CliRunner
 
-from engine.__main__ import application
+from engine.cli import application
 from engine.errors import SceneError
 from engine.scene.bodies import Box
 from engine.scene.fields import validate

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 import engine.simulation.guard
-from engine.__main__ import application
+from engine.cli import application
 from engine.device.options import chosen
 from engine.job.directory import JobDirectory
 from engine.job.storage import read_dataset

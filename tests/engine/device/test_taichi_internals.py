@@ -1,0 +1,72 @@
+"""The private names of Taichi that the engine uses exist in the installed version, with their meaning."""
+
+import ast
+from pathlib import Path
+
+import numpy as np
+import pytest
+import taichi as ti
+
+from engine.device import taichi_internals
+from engine.device.backend import Real, mat3, on_gpu
+from engine.device.taichi_internals import (
+    ASTTransformerContext,
+    Field,
+    StructField,
+    current_cfg,
+    is_arch_supported,
+    is_kernel,
+    to_numpy_type,
+)
+
+ENGINE = Path(taichi_internals.__file__).parents[1]
+
+
+@ti.data_oriented
+class Part:
+    @ti.kernel
+    def kernel(self):
+        pass
+
+    @ti.func
+    def function(self):
+        pass
+
+
+@pytest.mark.usefixtures("taichi")
+def test_fields_are_told_apart_and_count_their_components():
+    struct = ti.types.struct(a=Real, b=mat3).field(shape=3)
+    assert isinstance(struct, StructField) and isinstance(struct, Field)
+    assert set(struct.keys) == {"a", "b"} and isinstance(struct.get_member_field("a"), Field)
+    matrix = struct.get_member_field("b")
+    assert (matrix.n, matrix.m) == (3, 3)
+
+
+def test_types_of_the_device_have_types_of_the_host():
+    assert [np.dtype(to_numpy_type(kind)).name for kind in (ti.f64, ti.f32, ti.i32)] == ["float64", "float32", "int32"]
+
+
+@pytest.mark.usefixtures("taichi")
+def test_the_running_architecture_is_known():
+    assert current_cfg().arch == ti.cpu and is_arch_supported(ti.cpu)
+    assert not on_gpu()
+
+
+def test_kernels_are_known_by_their_mark():
+    assert is_kernel(vars(Part)["kernel"])
+    assert not is_kernel(vars(Part)["function"])
+
+
+def test_the_compiler_asks_for_source_positions():
+    assert callable(ASTTransformerContext.get_pos_info)
+
+
+def test_no_other_file_imports_them():
+    found = {
+        path.name
+        for path in ENGINE.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if (isinstance(node, ast.ImportFrom) and str(node.module).startswith("taichi.lang"))
+        or (isinstance(node, ast.Attribute) and ast.unparse(node).startswith("ti.lang"))
+    }
+    assert found == {"taichi_internals.py"}
