@@ -13,8 +13,9 @@ VENV := .venv
 RUN := $(VENV)/bin/python -m
 INSTALLED := $(VENV)/installed
 RESOURCES = $(if $(WORKERS),--workers $(WORKERS)) $(if $(THREADS),--threads-per-job $(THREADS)) $(OPTIONS)
-# what is done is plotted, also when a job failed; the exit code is the campaign's
-THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; exit $$code
+# what is done is plotted, also when a job failed; the exit code is the campaign's, or else tells of damaged results
+THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; drawn=$$?; \
+	[ $$code -ne 0 ] || code=$$drawn; exit $$code
 
 .DEFAULT_GOAL := help
 .PHONY: help install campaign resume plan status plots accuracy stability test test-slow bench bench-gravity lint clean

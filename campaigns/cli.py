@@ -3,34 +3,25 @@
 import signal
 import sys
 from collections.abc import Sequence
-from enum import Enum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from analysis.results.collect import collect as collect_results
-from analysis.results.tables import reasons
 from campaigns.campaign import Campaign
 from campaigns.cluster import Resources, connect, share_cores
 from campaigns.directory import CampaignDirectory
 from campaigns.estimate import count_by_state
 from campaigns.expansion import expand
-from campaigns.job_state import CORRUPT, JobState, states
+from campaigns.job_state import TrackedJob, states
 from campaigns.plan import decide
 from campaigns.progress import display, show_once
 from campaigns.runner import Run
 from campaigns.study import Study, find_study, read_study
-from engine.errors import JobError, SceneError, in_words
-
-
-class Arch(Enum):
-    """Taichi architectures of the engine."""
-
-    cpu = "cpu"
-    cuda = "cuda"
-
+from engine.device.options import Arch
+from engine.errors import ExitCode, JobError, SceneError, in_words
+from engine.job.directory import JobState
 
 app = typer.Typer(
     help="Run studies of collisions: a study in, a directory of finished jobs out.",
@@ -59,14 +50,14 @@ def main() -> None:
     try:
         app()
     except SceneError as error:
-        sys.exit(_complain(str(error), 2))
+        sys.exit(_complain(str(error), ExitCode.BAD_INPUT))
     except JobError as error:
-        sys.exit(_complain(str(error), 1))
+        sys.exit(_complain(str(error), ExitCode.FAILED))
     except OSError as error:
-        sys.exit(_complain(f"{in_words(error)}; what is finished is kept, run again to go on", 1))
+        sys.exit(_complain(f"{in_words(error)}; what is finished is kept, run again to go on", ExitCode.FAILED))
 
 
-@app.command("run", help="Run every unfinished job of a study, then collect the results.")
+@app.command("run", help="Run every unfinished job of a study.")
 @app.command("resume", help="Go on with a study that was run before.")
 def run(
     context: typer.Context,
@@ -76,10 +67,10 @@ def run(
     threads_per_job: Threads = None,
     scheduler: Scheduler = None,
     slurm: Slurm = False,
-    arch: Device = Arch.cpu,
+    arch: Device = Arch.CPU,
     retry_failed: RetryFailed = False,
 ) -> None:
-    """Run every unfinished job of a study, then collect the results."""
+    """Run every unfinished job of a study."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         directory, campaign = _prepare(study, runs)
@@ -89,10 +80,12 @@ def run(
         slots, threads = share_cores(waiting, workers, threads_per_job)
         with connect(Resources(slots, threads, scheduler, slurm)) as client, display(Console()) as show:
             directory.write(campaign)
-            jobs = Run(directory, campaign, client, threads, arch.value, retry_failed).watch(show)
+            jobs = Run(directory, campaign, client, threads, arch, retry_failed).watch(show)
         _finish(directory, jobs, _arguments(study, runs))
     except KeyboardInterrupt:
-        raise typer.Exit(_complain(f"stopped; go on with: make resume {_arguments(study, runs)}", 130)) from None
+        raise typer.Exit(
+            _complain(f"stopped; go on with: make resume {_arguments(study, runs)}", ExitCode.INTERRUPTED)
+        ) from None
 
 
 @app.command()
@@ -110,14 +103,6 @@ def status(study: StudyName, runs: Runs = DEFAULT_RUNS) -> None:
     """Show how every job stands."""
     directory = _directory(study, runs)
     show_once(Console(), states(directory, directory.read()))
-
-
-@app.command()
-def collect(study: StudyName, runs: Runs = DEFAULT_RUNS) -> None:
-    """Gather the results of all finished jobs in one data set, results.nc."""
-    directory = _directory(study, runs)
-    directory.read()
-    _collect(directory, _arguments(study, runs))
 
 
 @app.command()
@@ -142,24 +127,15 @@ def _prepare(study: str, runs: Path) -> tuple[CampaignDirectory, Campaign]:
     return directory, directory.admit(expand(content, str(path)))
 
 
-def _finish(directory: CampaignDirectory, jobs: Sequence[JobState], arguments: str) -> None:
-    """Collect, report, and exit with code 1 unless every job is done."""
+def _finish(directory: CampaignDirectory, jobs: Sequence[TrackedJob], arguments: str) -> None:
+    """Report how each job ended, and exit with code 1 unless every job is done."""
     for job in jobs:
-        if job.status.state != "done":
+        if job.status.state != JobState.DONE:
             print(f"{job.id}  {job.status.state}: {decide(job.status, False).reason}")
     print(count_by_state([job.status for job in jobs]))
-    unsound = _collect(directory, arguments)
-    if unsound or any(job.status.state != "done" for job in jobs):
-        raise typer.Exit(1)
-
-
-def _collect(directory: CampaignDirectory, arguments: str) -> bool:
-    """Gather the results; whether a job that says done turned out to be damaged."""
-    damaged = reasons(collect_results(directory.path), CORRUPT)
-    for reason in damaged:
-        print(reason)
-    print(f"results in {directory.path / 'results.nc'}; figures with: make plots {arguments}")
-    return bool(damaged)
+    print(f"jobs in {directory.path}; results and figures with: make plots {arguments}")
+    if any(job.status.state != JobState.DONE for job in jobs):
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _arguments(study: str, runs: Path) -> str:

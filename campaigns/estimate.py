@@ -5,8 +5,7 @@ from collections import Counter
 from collections.abc import Sequence
 from datetime import timedelta
 
-from campaigns.job_state import ALL_STATES
-from engine.job.directory import Status
+from engine.job.directory import JobState, Status
 
 
 def time_left(statuses: Sequence[Status]) -> float:
@@ -38,4 +37,4 @@ def duration(seconds: float) -> str:
 def count_by_state(statuses: Sequence[Status]) -> str:
     """How many jobs are in each state: `3 done, 1 failed`."""
     counts = Counter(status.state for status in statuses)
-    return ", ".join(f"{counts[state]} {state}" for state in ALL_STATES if counts[state])
+    return ", ".join(f"{counts[state]} {state}" for state in JobState if counts[state])

@@ -7,16 +7,17 @@ from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
 from campaigns.job_names import belongs_to
 from engine.errors import JobError
-from engine.job.directory import WRITTEN, JobDirectory, Status
-
-CORRUPT = "corrupt"
-"""State of a job whose directory contradicts itself."""
-ALL_STATES = (*WRITTEN, CORRUPT)
+from engine.job.directory import JobDirectory, JobState, Status
 
 
 @dataclass(frozen=True)
-class JobState:
-    """One job directory and how far it is."""
+class TrackedJob:
+    """One job of a campaign and how it stands.
+
+    Attributes:
+        directory: the job directory.
+        status: how the job stands.
+    """
 
     directory: Path
     status: Status
@@ -27,10 +28,10 @@ class JobState:
         return self.directory.name
 
 
-def states(directory: CampaignDirectory, campaign: Campaign) -> list[JobState]:
+def states(directory: CampaignDirectory, campaign: Campaign) -> list[TrackedJob]:
     """How all jobs of a campaign stand now."""
     paths = [directory.path / job.directory for job in campaign.jobs]
-    return [JobState(path, status_of(path)) for path in paths]
+    return [TrackedJob(path, status_of(path)) for path in paths]
 
 
 def status_of(job_directory: Path) -> Status:
@@ -39,9 +40,9 @@ def status_of(job_directory: Path) -> Status:
         _require_own_scene(job_directory)
         return _sound_status(JobDirectory(job_directory))
     except JobError as error:
-        return Status(state=CORRUPT, reason=" ".join(str(error).split()))
+        return Status(state=JobState.CORRUPT, reason=" ".join(str(error).split()))
     except OSError as error:
-        return Status(state=CORRUPT, reason=f"{job_directory}: cannot be read: {error}")
+        return Status(state=JobState.CORRUPT, reason=f"{job_directory}: cannot be read: {error}")
 
 
 def _require_own_scene(job_directory: Path) -> None:
@@ -52,6 +53,6 @@ def _require_own_scene(job_directory: Path) -> None:
 
 def _sound_status(job: JobDirectory) -> Status:
     status = job.status()
-    if status.state == "done" and not job.final.is_file():
+    if status.state == JobState.DONE and not job.final.is_file():
         raise JobError(f"{job.final}: missing, though status.json says done")
     return status

@@ -11,16 +11,30 @@ from rich.table import Table
 from rich.text import Text
 
 from campaigns.estimate import count_by_state, duration, percent, time_left
-from campaigns.job_state import CORRUPT, JobState
+from campaigns.job_state import TrackedJob
+from engine.job.directory import JobState
 
-Show = Callable[[Sequence[JobState]], None]
+Show = Callable[[Sequence[TrackedJob]], None]
 """Shows how all jobs stand now."""
 
 PLAIN_PERIOD = 30.0
 """Time [s] between two plain lines on the whole campaign."""
 
-_COLOURS = {"done": "green", "running": "cyan", "failed": "red", "interrupted": "yellow", CORRUPT: "magenta"}
-_SHOWN_FIRST = ("running", CORRUPT, "failed", "interrupted", "pending", "done")
+_COLOURS: dict[str, str] = {
+    JobState.DONE: "green",
+    JobState.RUNNING: "cyan",
+    JobState.FAILED: "red",
+    JobState.INTERRUPTED: "yellow",
+    JobState.CORRUPT: "magenta",
+}
+_SHOWN_FIRST = (
+    JobState.RUNNING,
+    JobState.CORRUPT,
+    JobState.FAILED,
+    JobState.INTERRUPTED,
+    JobState.PENDING,
+    JobState.DONE,
+)
 _FRAME = 5
 """Lines of the live view that are not jobs."""
 
@@ -42,7 +56,7 @@ class PlainLines:
         self._states: dict[str, str] = {}
         self._next_total = 0.0
 
-    def show(self, jobs: Sequence[JobState]) -> None:
+    def show(self, jobs: Sequence[TrackedJob]) -> None:
         """Print what changed since the last time."""
         for job in jobs:
             if self._states.setdefault(job.id, job.status.state) != job.status.state:
@@ -53,7 +67,7 @@ class PlainLines:
             self._next_total = time.monotonic() + PLAIN_PERIOD
 
 
-def show_once(console: Console, jobs: Sequence[JobState]) -> None:
+def show_once(console: Console, jobs: Sequence[TrackedJob]) -> None:
     """Print all jobs, as a table or as plain lines, and their total."""
     if console.is_terminal:
         console.print(table(jobs))
@@ -62,20 +76,20 @@ def show_once(console: Console, jobs: Sequence[JobState]) -> None:
     print(total(jobs))
 
 
-def line(job: JobState) -> str:
+def line(job: TrackedJob) -> str:
     """One job in one line."""
     reason = f": {job.status.reason}" if job.status.reason else ""
     return f"{job.id}  {job.status.state}  {percent(job.status):.0f} %{reason}"
 
 
-def total(jobs: Sequence[JobState]) -> str:
+def total(jobs: Sequence[TrackedJob]) -> str:
     """The whole campaign in one line."""
     statuses = [job.status for job in jobs]
     left = time_left(statuses)
     return count_by_state(statuses) + (f"; about {duration(left)} left" if left > 0.0 else "")
 
 
-def table(jobs: Sequence[JobState]) -> Table:
+def table(jobs: Sequence[TrackedJob]) -> Table:
     """One row a job."""
     rows = Table("job", "state", "", "simulated", "steps/s", "left", "reason", box=None)
     for job in jobs:
@@ -83,14 +97,14 @@ def table(jobs: Sequence[JobState]) -> Table:
     return rows
 
 
-def _screen(jobs: Sequence[JobState], room: int) -> Group:
+def _screen(jobs: Sequence[TrackedJob], room: int) -> Group:
     """As many jobs as there is room for, running ones first, and the total."""
     chosen = sorted(jobs, key=lambda job: _SHOWN_FIRST.index(job.status.state))[: max(1, room)]
     hidden = len(jobs) - len(chosen)
     return Group(table(chosen), *([f"{hidden} more jobs not shown"] if hidden else []), total(jobs))
 
 
-def _cells(job: JobState) -> tuple[Text | ProgressBar, ...]:
+def _cells(job: TrackedJob) -> tuple[Text | ProgressBar, ...]:
     status = job.status
     running = status.state == "running"
     return (

@@ -10,16 +10,17 @@ from dask.distributed import Client, Future
 
 from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
-from campaigns.job_state import JobState, states
+from campaigns.job_state import TrackedJob, states
 from campaigns.plan import decide
 from campaigns.progress import Show
-from campaigns.worker import CLAIMED, Outcome, run_job, signal_jobs
+from campaigns.worker import Outcome, run_job, signal_jobs
+from engine.errors import ExitCode
 
 PERIOD = 1.0
 """Time [s] between two looks at the disk."""
 STOP_PATIENCE = 30.0
 """Time [s] engines get to write their checkpoint before they are killed."""
-QUIET_LOOKS = 3
+IDLE_POLLS = 3
 """Looks without any engine before all have ended: a worker may not know yet that its next job is cancelled."""
 
 
@@ -43,7 +44,7 @@ class Run:
     _futures: dict[Path, Future] = field(default_factory=dict)
     _outcomes: dict[Path, Outcome] = field(default_factory=dict)
 
-    def watch(self, show: Show) -> list[JobState]:
+    def watch(self, show: Show) -> list[TrackedJob]:
         """Run until no job is left to run and none is being run by another process; how they stand then.
 
         A job is tried once; one that another process gives up is taken over.
@@ -53,7 +54,7 @@ class Run:
         """
         try:
             while True:
-                jobs = self._look()
+                jobs = self._poll()
                 show(jobs)
                 if not self._futures and not any(job.status.state == "running" for job in jobs):
                     return jobs
@@ -62,28 +63,28 @@ class Run:
             self._stop()
             raise
 
-    def _look(self) -> list[JobState]:
+    def _poll(self) -> list[TrackedJob]:
         """Take in what ended, then read the disk, then hand out what is left."""
-        self._harvest()
+        self._gather()
         jobs = states(self.directory, self.campaign)
         for job in jobs:
             self._submit(job)
-        return [self._explained(job) for job in jobs]
+        return [self._with_reason(job) for job in jobs]
 
-    def _submit(self, job: JobState) -> None:
+    def _submit(self, job: TrackedJob) -> None:
         untried = job.directory not in self._futures and job.directory not in self._outcomes
         if untried and decide(job.status, self.retry_failed).runs:
             self._futures[job.directory] = self.client.submit(
                 run_job, job.directory, self.threads, self.arch, self.retry_failed, pure=False
             )
 
-    def _harvest(self) -> None:
+    def _gather(self) -> None:
         for path in [path for path, future in self._futures.items() if future.done()]:
             outcome = _outcome(self._futures.pop(path))
-            if outcome.code != CLAIMED:
+            if outcome.code != ExitCode.BUSY:
                 self._outcomes[path] = outcome
 
-    def _explained(self, job: JobState) -> JobState:
+    def _with_reason(self, job: TrackedJob) -> TrackedJob:
         """The job with the reason its process gave, where the disk holds none."""
         outcome = self._outcomes.get(job.directory)
         if outcome is None or job.status.state in ("done", "running") or job.status.reason:
@@ -97,7 +98,7 @@ class Run:
         self.client.cancel(list(self._futures.values()))
         deadline = time.monotonic() + STOP_PATIENCE
         quiet = 0
-        while quiet < QUIET_LOOKS:
+        while quiet < IDLE_POLLS:
             quiet = 0 if any(self.client.run(signal_jobs, paths, signal.SIGTERM).values()) else quiet + 1
             time.sleep(0.2)
             if time.monotonic() > deadline:

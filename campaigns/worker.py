@@ -13,11 +13,10 @@ from typing import IO
 from campaigns.job_state import status_of
 from campaigns.parent_death import tethered
 from campaigns.plan import decide
+from engine.errors import ExitCode
 
 ENGINE = (sys.executable, "-m", "engine")
 """Command that runs one job directory."""
-CLAIMED = 3
-"""Exit code of the engine when another process has the job."""
 _TAIL = 2000
 """Bytes of error output that are searched for the last line."""
 
@@ -48,7 +47,7 @@ def run_job(directory: Path, threads: int, arch: str, retry_failed: bool) -> Out
         retry_failed: run the job although it failed before.
     """
     if not decide(status_of(directory), retry_failed).runs:
-        return Outcome(CLAIMED)
+        return Outcome(ExitCode.BUSY)
     command = [*ENGINE, "run", str(directory), "--threads", str(threads), "--arch", arch]
     with tempfile.TemporaryFile() as errors, _started(directory, command, errors) as process:
         code = process.wait()

@@ -12,7 +12,7 @@ from analysis.campaign import NONE, Campaign, Scalar, plain, read_campaign
 from analysis.remnant.outcome import Outcome, outcome
 from analysis.results.error_bars import combine
 from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
-from engine.job.directory import JobDirectory
+from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
 
 ALWAYS = ("velocity", "angle", "end_time")
@@ -89,7 +89,7 @@ def _texts(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataArra
         {"state": found.state, "reason": found.reason, "job": job.id}
         for job, found in zip(campaign.jobs, outcomes, strict=True)
     ]
-    empty = {"state": "missing", "reason": "", "job": ""}
+    empty = {"state": JobState.MISSING.value, "reason": "", "job": ""}
     return {
         name: _grid(
             campaign, np.array([cell[name] for cell in cells], dtype=object), empty[name], variable.attributes()

@@ -5,11 +5,22 @@ import xarray as xr
 
 from analysis.results.statistics import difference, resolved, standard_error
 from analysis.results.variables import COSTS, OUTCOMES, WITHOUT_ERROR
+from engine.job.directory import JobState
 
 MEMBERS = ("resolution", "seed")
 """Dimensions of the members of one cell."""
 
-_NOT_DONE = ("corrupt", "failed", "running", "interrupted", "pending", "missing")
+_NOT_DONE = tuple(
+    state.value
+    for state in (
+        JobState.CORRUPT,
+        JobState.FAILED,
+        JobState.RUNNING,
+        JobState.INTERRUPTED,
+        JobState.PENDING,
+        JobState.MISSING,
+    )
+)
 """States of a member that keep a cell from being done; the first is the cell's."""
 
 _ERROR = (

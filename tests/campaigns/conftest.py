@@ -5,13 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-import xarray as xr
 
 import campaigns.cli
 import campaigns.runner
 import campaigns.worker
 from tests.helpers import fake_engine
-from tests.helpers.undamaged_results import SOUND
 
 STUDY = """
 name = "{name}"
@@ -59,22 +57,7 @@ def runs(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def collected(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
-    """The campaign directories that were collected."""
-    directories: list[Path] = []
-
-    def nothing_unsound(directory: Path) -> xr.Dataset:
-        directories.append(directory)
-        return SOUND
-
-    monkeypatch.setattr(campaigns.cli, "collect_results", nothing_unsound)
-    return directories
-
-
-@pytest.fixture
-def command(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], runs: Path, collected: list[Path]
-) -> Iterator[Command]:
+def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], runs: Path) -> Iterator[Command]:
     """Run `python -m campaigns` in this process with the fake engine."""
     monkeypatch.setattr(campaigns.worker, "ENGINE", (sys.executable, str(Path(fake_engine.__file__))))
     monkeypatch.setattr(campaigns.runner, "PERIOD", 0.05)

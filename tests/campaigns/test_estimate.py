@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from campaigns.estimate import count_by_state, duration, percent, time_left
-from campaigns.job_state import ALL_STATES, JobState
+from campaigns.job_state import TrackedJob
 from campaigns.plan import decide
 from campaigns.progress import PlainLines, line, show_once, total
-from engine.job.directory import Status
+from engine.job.directory import JobState, Status
 
 ANY_NUMBER = st.floats(allow_nan=True, allow_infinity=True)
 ANY_STATUS = st.builds(
     Status,
-    state=st.sampled_from(ALL_STATES),
+    state=st.sampled_from(JobState),
     reason=st.sampled_from(["", "[bold]a[/] reason", "a " * 200]),
     time=ANY_NUMBER,
     end_time=ANY_NUMBER,
@@ -40,7 +40,7 @@ def test_pending_jobs_take_as_long_as_the_others():
 
 def test_time_left_is_unknown_before_anything_ran():
     assert math.isnan(time_left([Status(state="pending")]))
-    assert "left" not in total([JobState(Path("a"), Status(state="pending"))])
+    assert "left" not in total([TrackedJob(Path("a"), Status(state="pending"))])
 
 
 def test_nothing_is_left_when_all_is_done():
@@ -61,7 +61,7 @@ def test_counts_leave_out_empty_states():
 @settings(max_examples=50, deadline=None)
 @given(st.lists(ANY_STATUS, max_size=4))
 def test_any_status_can_be_shown(statuses):
-    jobs = [JobState(Path("jobs/v0100_a05-01234567"), status) for status in statuses]
+    jobs = [TrackedJob(Path("jobs/v0100_a05-01234567"), status) for status in statuses]
     show_once(Console(force_terminal=True, width=100), jobs)
     show_once(Console(force_terminal=False), jobs)
     for job in jobs:
@@ -72,7 +72,7 @@ def test_any_status_can_be_shown(statuses):
 
 def test_plain_lines_tell_changes_once(capsys):
     lines = PlainLines()
-    pending, done = (JobState(Path("a"), Status(state=state)) for state in ("pending", "done"))
+    pending, done = (TrackedJob(Path("a"), Status(state=state)) for state in ("pending", "done"))
     for job in (pending, pending, done, done):
         lines.show([job])
     assert capsys.readouterr().out.splitlines() == ["1 pending", "a  done  100 %"]

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-import xarray as xr
 from dask.distributed import LocalCluster
 
 Tree = Callable[[Path], dict[str, bytes]]
@@ -23,12 +22,11 @@ def job(runs: Path, alias: str) -> Path:
     return path
 
 
-def test_runs_all_jobs_then_collects(command, write_study, runs, collected):
+def test_runs_all_jobs(command, write_study, runs):
     result = command("run", write_study())
     assert result.code == 0
     assert "2 done" in result.out
     assert "make plots STUDY=" in result.out
-    assert collected == [runs / "small"]
     assert len(list(runs.glob("small/jobs/*/final.nc"))) == 2
 
 
@@ -76,15 +74,6 @@ def test_a_setting_that_becomes_an_axis_keeps_finished_jobs(command, write_study
     assert len(list(runs.glob("small/jobs/*"))) == 4
 
 
-def test_a_job_that_says_done_and_is_damaged_is_told(command, write_study, monkeypatch):
-    told = {"job": ["one", "two"], "state": ["done", "corrupt"], "reason": ["", "final.nc is cut"]}
-    damaged = xr.Dataset({name: ("case", texts) for name, texts in told.items()}, {"case": ["a", "b"]})
-    monkeypatch.setattr("campaigns.cli.collect_results", lambda directory: damaged)
-    result = command("run", write_study())
-    assert result.code == 1
-    assert "two: corrupt: final.nc is cut" in result.out and "one:" not in result.out
-
-
 def test_error_bars_keep_finished_jobs(command, write_study, runs):
     command("run", write_study(velocity="[100]"))
     command("run", write_study(velocity="[100]", angle="[5]\n[error_bars]\nseeds = [1, 2]"))
@@ -100,13 +89,12 @@ def test_jobs_that_left_the_study_stay(command, write_study, runs):
     assert len(json.loads((runs / "small" / "campaign.json").read_text())["jobs"]) == 1
 
 
-def test_failed_job_is_tried_again_only_on_request(command, write_study, runs, monkeypatch, collected):
+def test_failed_job_is_tried_again_only_on_request(command, write_study, runs, monkeypatch):
     monkeypatch.setenv("FAKE_FAULT", "v0200")
     result = command("run", write_study())
     assert result.code == 1
     assert "1 done, 1 failed" in result.out
     assert "particle 7 left the range" in result.out
-    assert collected
     monkeypatch.delenv("FAKE_FAULT")
     assert command("run", write_study()).code == 1
     assert len(starts(runs, "v0200_a05")) == 1
@@ -187,13 +175,6 @@ def test_plan_writes_nothing_and_gives_reasons(command, write_study, runs, monke
 
 def test_where_prints_the_campaign_directory(command, write_study, runs):
     assert command("where", write_study()).out.strip() == str(runs / "small")
-
-
-def test_collect_needs_no_run(command, write_study, runs, collected):
-    command("run", write_study())
-    collected.clear()
-    assert command("collect", write_study()).code == 0
-    assert collected == [runs / "small"]
 
 
 def test_full_disk_is_one_line(command, write_study, runs, monkeypatch):

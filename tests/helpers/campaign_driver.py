@@ -1,4 +1,4 @@
-"""`python -m campaigns` with the fake engine and without collecting, for tests that need a process of their own."""
+"""`python -m campaigns` with the fake engine, for tests that need a process of their own."""
 
 import sys
 from pathlib import Path
@@ -6,10 +6,8 @@ from pathlib import Path
 import campaigns.cli
 import campaigns.runner
 import campaigns.worker
-from tests.helpers.undamaged_results import SOUND
 
 campaigns.worker.ENGINE = (sys.executable, str(Path(__file__).with_name("fake_engine.py")))
 campaigns.runner.PERIOD = 0.05
-campaigns.cli.collect_results = lambda directory: SOUND
 
 campaigns.cli.main()

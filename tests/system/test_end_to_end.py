@@ -46,6 +46,7 @@ def uninterrupted(study: Path) -> Path:
 
 
 def test_a_study_ends_in_results_table_and_figures(uninterrupted: Path) -> None:
+    subprocess.run(command("analysis", "plots", str(uninterrupted)), check=True, timeout=120)
     results = xr.load_dataset(uninterrupted / "results.nc")
     assert dict(results.sizes) == {"velocity": 2, "angle": 2}
     assert (results["state"] == "done").all()
@@ -54,7 +55,6 @@ def test_a_study_ends_in_results_table_and_figures(uninterrupted: Path) -> None:
     assert (abs(results["drift_angular_momentum"]) < 1e-4).all()
     energy_lost = -results["drift_energy"]
     assert (energy_lost > 0.0).all() and (energy_lost < 0.4).all()  # by the transfer, in a collision this coarse
-    subprocess.run(command("analysis", "plots", str(uninterrupted)), check=True, timeout=120)
     figures = {path.name for path in (uninterrupted / "figures").iterdir()}
     assert {"maps.png", "shape_vs_angle.png", "remnants.png", "conservation.png"} <= figures
     assert (uninterrupted / "shape_table.csv").read_text().count("done") == 4

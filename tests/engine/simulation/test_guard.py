@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from campaigns.job_state import JobState, status_of
+from campaigns.job_state import TrackedJob, status_of
 from campaigns.progress import line
 from engine.errors import Fault, GuardFault, stop
 from engine.job.checkpoint import save_checkpoint
@@ -214,7 +214,7 @@ def test_a_status_keeps_its_fault_in_parts_and_campaigns_show_it(tmp_path: Path)
     assert JobDirectory(tmp_path).status().fault == fault
     written = json.loads((tmp_path / "status.json").read_text())["fault"]
     assert written == {**asdict(fault), "value": None}
-    shown = JobState(tmp_path, status_of(tmp_path))
+    shown = TrackedJob(tmp_path, status_of(tmp_path))
     assert shown.status.fault == fault and str(fault) in line(shown)
 
 
