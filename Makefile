@@ -50,7 +50,8 @@ plots: $(INSTALLED) ## print the table of shapes of STUDY and draw its figures
 accuracy: $(INSTALLED) ## turn every numerical setting of scenes and of a collision: error against computing time
 	@$(RUN) engine accuracy '$(RUNS)/verification' $(if $(WORKERS),--workers $(WORKERS))
 	@$(RUN) campaigns run accuracy --runs '$(RUNS)' $(RESOURCES) ; code=$$?; \
-		[ $$code -gt 1 ] || $(RUN) analysis accuracy '$(RUNS)/accuracy'; exit $$code
+		[ $$code -gt 1 ] || $(RUN) analysis accuracy '$(RUNS)/accuracy'; drawn=$$?; \
+		[ $$code -ne 0 ] || code=$$drawn; exit $$code
 
 stability: $(INSTALLED) ## run stiff and extreme cases; each is stable, or stopped with a reason
 	@$(RUN) engine stability '$(RUNS)/stability' $(if $(WORKERS),--workers $(WORKERS))

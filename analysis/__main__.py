@@ -44,9 +44,12 @@ def collect(campaign: Path) -> None:
 @app.command()
 def accuracy(campaign: Path) -> None:
     """Compare the cases of a campaign that turns one setting at a time: what each costs and changes."""
-    text, written = report(campaign)
+    results, text, written = report(campaign)
     typer.echo(text)
+    for line in reasons(results):
+        typer.echo(line)
     typer.echo("written: " + ", ".join(str(path) for path in written))
+    _fail_on_damage(results)
 
 
 @app.command()

@@ -18,7 +18,7 @@ HEADS = {"mass_ratio": "M_lr/M_t", "b_over_a": "b/a", "c_over_a": "c/a", "bulk_d
 DECIMALS = {"mass_ratio": 3, "b_over_a": 3, "c_over_a": 3, "bulk_density": 0}
 
 
-def report(campaign_directory: Path) -> tuple[str, list[Path]]:
+def report(campaign_directory: Path) -> tuple[xr.Dataset, str, list[Path]]:
     """Write accuracy.nc, accuracy.png and accuracy.md into a campaign's directory; returns the text and the files.
 
     Raises:
@@ -34,7 +34,7 @@ def report(campaign_directory: Path) -> tuple[str, list[Path]]:
     write_dataset(files[0], found)
     save(error_against_cost(found), files[1])
     write_text(files[2], text)
-    return text, files
+    return results, text, files
 
 
 def markdown(found: xr.Dataset, planned: int) -> str:

@@ -12,12 +12,12 @@ from campaigns.estimate import count_by_state, duration, percent, time_left
 from campaigns.job_state import TrackedJob
 from campaigns.plan import decide
 from campaigns.progress import PlainLines, line, show_once, total
-from engine.job.directory import JobState, Status
+from engine.job.directory import WRITTEN, JobState, Status
 
 ANY_NUMBER = st.floats(allow_nan=True, allow_infinity=True)
 ANY_STATUS = st.builds(
     Status,
-    state=st.sampled_from(JobState),
+    state=st.sampled_from([*WRITTEN, JobState.CORRUPT]),
     reason=st.sampled_from(["", "[bold]a[/] reason", "a " * 200]),
     time=ANY_NUMBER,
     end_time=ANY_NUMBER,
