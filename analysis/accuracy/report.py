@@ -19,7 +19,10 @@ DECIMALS = {"mass_ratio": 3, "b_over_a": 3, "c_over_a": 3, "bulk_density": 0}
 
 
 def report(campaign_directory: Path) -> tuple[xr.Dataset, str, list[Path]]:
-    """Write accuracy.nc, accuracy.png and accuracy.md into a campaign's directory; returns the text and the files.
+    """Write accuracy.nc, accuracy.png and accuracy.md into a campaign's directory.
+
+    Returns:
+        The results of its jobs, the text, and the files.
 
     Raises:
         SceneError: the campaign is none of cases with several seeds around a base, or its base has no finished run.
