@@ -6,7 +6,7 @@ from pathlib import Path
 import typer
 import xarray as xr
 
-from analysis.accuracy.report import report
+from analysis.accuracy.report import write_accuracy
 from analysis.remnant.outcome import latest, measure
 from analysis.report.products import plots as draw
 from analysis.results.collect import collect as collect_results
@@ -44,7 +44,7 @@ def collect(campaign: Path) -> None:
 @app.command()
 def accuracy(campaign: Path) -> None:
     """Compare the cases of a campaign that turns one setting at a time: what each costs and changes."""
-    results, text, written = report(campaign)
+    results, text, written = write_accuracy(campaign)
     typer.echo(text)
     for line in reasons(results):
         typer.echo(line)
