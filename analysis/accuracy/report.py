@@ -8,9 +8,9 @@ import xarray as xr
 from analysis.accuracy.cases import cases
 from analysis.accuracy.figure import error_against_cost
 from analysis.accuracy.measure import DRIFTS, MEASURED, accuracy
-from analysis.campaign import read_campaign
 from analysis.report.figures.style import save
 from analysis.results.collect import collect
+from campaigns.campaign import KeptCampaign, read_campaign
 from engine.errors import SceneError
 from engine.job.storage import write_dataset, write_text
 
@@ -27,7 +27,7 @@ def report(campaign_directory: Path) -> tuple[xr.Dataset, str, list[Path]]:
     Raises:
         SceneError: the campaign is none of cases with several seeds around a base, or its base has no finished run.
     """
-    known = cases(read_campaign(campaign_directory))
+    known = cases(read_campaign(campaign_directory, KeptCampaign))
     results = collect(campaign_directory)
     if not (results["state"].sel(case="base") == "done").any():
         raise SceneError(f"{campaign_directory}: no run of the case 'base' is done yet; run the campaign first")

@@ -10,9 +10,9 @@ import pandas as pd
 import xarray as xr
 from jinja2 import Environment, PackageLoader
 
-from analysis.campaign import Campaign
 from analysis.report.figures.style import Directories
 from analysis.results.tables import as_shown, reasons, shape_table, unresolved
+from campaigns.campaign import KeptCampaign
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_text
 
@@ -24,7 +24,11 @@ _page = Environment(
 
 
 def write_report(
-    campaign: Campaign, results: xr.Dataset, directories: Directories, figures: Sequence[tuple[str, Path]], path: Path
+    campaign: KeptCampaign,
+    results: xr.Dataset,
+    directories: Directories,
+    figures: Sequence[tuple[str, Path]],
+    path: Path,
 ) -> None:
     """Write the page of a campaign.
 
@@ -37,6 +41,7 @@ def write_report(
     """
     text = _page.render(
         campaign=campaign,
+        description=campaign.study.get("description", ""),
         counts=results["state"].to_series().value_counts().to_dict(),
         table=_html(shape_table(results)),
         notes=[*unresolved(results), *reasons(results)],

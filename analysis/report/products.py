@@ -4,12 +4,12 @@ from pathlib import Path
 
 import xarray as xr
 
-from analysis.campaign import read_campaign
 from analysis.report.figures import angle, conservation, gallery, maps
 from analysis.report.figures.style import Drawing, save
 from analysis.report.page import write_report
 from analysis.results.collect import collect
 from analysis.results.tables import write_shape_table
+from campaigns.campaign import KeptCampaign, read_campaign
 
 FIGURES: tuple[Drawing, ...] = (gallery, angle, maps, conservation)
 """Figures of a campaign, in the order of its page."""
@@ -21,7 +21,7 @@ def plots(campaign_directory: Path) -> tuple[xr.Dataset, list[Path]]:
     Raises:
         SceneError: there is no campaign.json, or it does not describe a campaign.
     """
-    results, campaign = collect(campaign_directory), read_campaign(campaign_directory)
+    results, campaign = collect(campaign_directory), read_campaign(campaign_directory, KeptCampaign)
     directories = {job.id: campaign_directory / job.directory for job in campaign.jobs}
     figures = campaign_directory / "figures"
     figures.mkdir(exist_ok=True)

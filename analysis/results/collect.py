@@ -8,10 +8,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from analysis.campaign import NONE, Campaign, Scalar, plain, read_campaign
+from analysis.campaign import NONE, Scalar, parameters, plain
 from analysis.remnant.outcome import Outcome, outcome
 from analysis.results.error_bars import combine
 from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
+from campaigns.campaign import KeptCampaign, read_campaign
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
 
@@ -29,7 +30,7 @@ def collect(campaign_directory: Path) -> xr.Dataset:
     Raises:
         SceneError: there is no campaign.json, or it does not describe a campaign.
     """
-    campaign = read_campaign(campaign_directory)
+    campaign = read_campaign(campaign_directory, KeptCampaign)
     outcomes = [
         outcome(JobDirectory(campaign_directory / job.directory), campaign.physics_version) for job in campaign.jobs
     ]
@@ -41,7 +42,7 @@ def collect(campaign_directory: Path) -> xr.Dataset:
     return results
 
 
-def assemble(campaign: Campaign, outcomes: list[Outcome]) -> xr.Dataset:
+def assemble(campaign: KeptCampaign, outcomes: list[Outcome]) -> xr.Dataset:
     """The data set of a campaign from the outcome of each of its jobs, in their order."""
     shared, differing = _parameters(campaign)
     return xr.Dataset(
@@ -56,26 +57,26 @@ def assemble(campaign: Campaign, outcomes: list[Outcome]) -> xr.Dataset:
     )
 
 
-def _parameters(campaign: Campaign) -> tuple[dict[str, Scalar], list[str]]:
+def _parameters(campaign: KeptCampaign) -> tuple[dict[str, Scalar], list[str]]:
     """Parameters all jobs share, and the names of those that are coordinates beside the axes."""
-    tables = [job.parameters for job in campaign.jobs]
+    tables = [parameters(job) for job in campaign.jobs]
     names = list(dict.fromkeys(name for table in tables for name in table))
     shared = {name: tables[0][name] for name in names if len({table.get(name, NONE) for table in tables}) == 1}
     differing = [name for name in names if name not in shared and any(t.get(name, NONE) != NONE for t in tables)]
     return shared, [name for name in dict.fromkeys((*ALWAYS, *differing)) if name not in campaign.dims]
 
 
-def _axes(campaign: Campaign) -> dict[str, xr.DataArray]:
+def _axes(campaign: KeptCampaign) -> dict[str, xr.DataArray]:
     columns = {dim: _column([plain(value) for value in campaign.coords[dim]]) for dim in campaign.dims}
     return {dim: xr.DataArray(column, dims=dim, attrs=_attributes(dim)) for dim, column in columns.items()}
 
 
-def _parameter(campaign: Campaign, name: str) -> xr.DataArray:
-    column = _column([job.parameters.get(name, NONE) for job in campaign.jobs])
+def _parameter(campaign: KeptCampaign, name: str) -> xr.DataArray:
+    column = _column([parameters(job).get(name, NONE) for job in campaign.jobs])
     return _grid(campaign, column, np.nan if column.dtype.kind == "f" else NONE, _attributes(name))
 
 
-def _numbers(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
+def _numbers(campaign: KeptCampaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
     return {
         name: _grid(
             campaign, _column([found.numbers.get(name, NONE) for found in outcomes]), np.nan, variable.attributes()
@@ -84,7 +85,7 @@ def _numbers(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataAr
     }
 
 
-def _texts(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
+def _texts(campaign: KeptCampaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
     cells = [
         {"state": found.state, "reason": found.reason, "job": job.id}
         for job, found in zip(campaign.jobs, outcomes, strict=True)
@@ -98,11 +99,11 @@ def _texts(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataArra
     }
 
 
-def _grid(campaign: Campaign, column: NDArray[Any], empty: float | str, attributes: dict[str, str]) -> xr.DataArray:
+def _grid(campaign: KeptCampaign, column: NDArray[Any], empty: float | str, attributes: dict[str, str]) -> xr.DataArray:
     """One value per job, each in its cell; `empty` where no job is."""
     values = np.full(campaign.shape, empty, dtype=column.dtype)
     for job, value in zip(campaign.jobs, column, strict=True):
-        values[campaign.cell(job)] = value
+        values[campaign.position(job)] = value
     return xr.DataArray(values, dims=campaign.dims, attrs=attributes)
 
 
