@@ -11,7 +11,7 @@ from analysis.remnant.hull import hull_of
 from analysis.remnant.particles import Particles, read_particles, snapshots
 from analysis.remnant.settling import is_settled, shape_change
 from analysis.remnant.spin import spin_period
-from analysis.results.variables import DAMAGED
+from analysis.results.variables import DAMAGED, DRIFTS
 from engine.errors import JobError, RunFault
 from engine.job.directory import JobDirectory
 from engine.scene.scene import scene_in
@@ -96,7 +96,7 @@ def measure(job: JobDirectory, particles: Particles) -> Numbers:
         | _hull(remnant)
         | _interior(remnant)
         | {"time_after_contact": particles.time, "shape_change": change, "settled": is_settled(change)}
-        | {f"drift_{name}": float(value) for name, value in last.data_vars.items()}
+        | {drift: float(last[name]) for drift, name in DRIFTS.items()}
         | {"steps": float(status.step), "wall_time": status.wall_time, "cpu_time": status.cpu_time}
     )
 

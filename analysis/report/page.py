@@ -12,11 +12,10 @@ from jinja2 import Environment, PackageLoader
 
 from analysis.report.figures.style import Directories
 from analysis.results.tables import as_shown, reasons, shape_table, unresolved
+from analysis.results.variables import DRIFTS
 from campaigns.campaign import KeptCampaign
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_text
-
-DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
 
 _page = Environment(
     loader=PackageLoader("analysis.report"), autoescape=True, trim_blocks=True, lstrip_blocks=True

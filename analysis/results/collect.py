@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from analysis.campaign import NONE, Scalar, parameters, plain
 from analysis.remnant.outcome import Outcome, outcome
 from analysis.results.error_bars import combine
-from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
+from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS
 from campaigns.campaign import KeptCampaign, read_campaign
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
+from engine.quantities import Quantity
 
 ALWAYS = ("velocity", "angle", "end_time")
 """Parameters that are coordinates even when every job has the same."""
@@ -115,4 +116,4 @@ def _column(values: Sequence[Scalar]) -> NDArray[Any]:
 
 
 def _attributes(name: str) -> dict[str, str]:
-    return PARAMETERS.get(name, Variable(name.replace("_", " "), "")).attributes()
+    return PARAMETERS.get(name, Quantity(name.replace("_", " "), "")).attributes()

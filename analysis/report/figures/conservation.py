@@ -12,6 +12,7 @@ from analysis.remnant.conservation import drifts, read_history
 from analysis.report.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, shades, styled
 from analysis.results.tables import cells
 from engine.job.directory import JobDirectory
+from engine.quantities import CONSERVED
 from engine.scene.scene import scene_in
 
 NAME = "conservation"
@@ -24,7 +25,6 @@ LEDGER = {
     "gravitational_energy": ("gravitational", GREEN),
     "total_energy": ("total", "black"),
 }
-DRIFTS = {"mass": "mass", "momentum": "momentum", "angular_momentum": "angular momentum", "energy": "total energy"}
 SMALLEST = 1e-17
 """Drifts are drawn from here up: below a unit in the last place there is none."""
 
@@ -67,11 +67,11 @@ def _drifts(figure: Any, done: pd.DataFrame, directories: Directories) -> None:
     for _, cell in done.iterrows():
         job = JobDirectory(directories[cell["job"]])
         changes = drifts(read_history(job.history), scene_in(job.path)).isel(time=slice(1, None))
-        for axes, name in zip(panels, DRIFTS, strict=True):
+        for axes, name in zip(panels, CONSERVED, strict=True):
             size = np.maximum(np.abs(changes[name]), SMALLEST)
             axes.plot(changes["time"] / 1000.0, size, color=colours[cell["velocity"]], linewidth=0.9, alpha=0.8)
-    for axes, title in zip(panels, DRIFTS.values(), strict=True):
-        axes.set(title=title, yscale="log")
+    for axes, name in zip(panels, CONSERVED, strict=True):
+        axes.set(title=name.replace("_", " "), yscale="log")
     figure.supylabel("size of the relative change since the start", fontsize=9)
     figure.supxlabel("time after contact [1000 s]", fontsize=9)
     lines = [Line2D([], [], color=colour, label=f"{velocity:g} m/s") for velocity, colour in colours.items()]
