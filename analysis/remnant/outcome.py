@@ -11,7 +11,7 @@ from analysis.remnant.hull import hull_of
 from analysis.remnant.particles import Particles, read_particles, snapshots
 from analysis.remnant.settling import is_settled, shape_change
 from analysis.remnant.spin import spin_period
-from analysis.results.variables import DAMAGED, DRIFTS
+from analysis.results.variables import DAMAGED, DRIFTS, UndescribedError, described
 from engine.errors import JobError, RunFault
 from engine.job.directory import JobDirectory
 from engine.scene.scene import scene_in
@@ -38,11 +38,14 @@ class Outcome:
 
 
 def outcome(job: JobDirectory, physics_version: int) -> Outcome:
-    """The outcome of a job; a damaged one is `corrupt` and never raises.
+    """The outcome of a job; a damaged one is `corrupt` and raises nothing.
 
     Args:
         job: the job directory.
         physics_version: a job computed with any other is corrupt.
+
+    Raises:
+        UndescribedError: as `measure`.
     """
     try:
         status = job.status()
@@ -54,6 +57,8 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
         return Outcome("done", "", measure(job, particles))
     except RunFault as fault:
         return Outcome("failed", _line(fault), {})
+    except UndescribedError:
+        raise
     except Exception as error:  # whatever is wrong with one job must not hide the others
         return Outcome("corrupt", f"{_line(error)}; {ANEW}", {})
 
@@ -74,7 +79,7 @@ def latest(job: JobDirectory) -> Particles:
 
 
 def measure(job: JobDirectory, particles: Particles) -> Numbers:
-    """Every variable of `analysis.results.variables.OUTCOMES`.
+    """Measure every variable of `analysis.results.variables.OUTCOMES`.
 
     Args:
         job: the job directory, for its scene, history and snapshots.
@@ -82,6 +87,7 @@ def measure(job: JobDirectory, particles: Particles) -> Numbers:
 
     Raises:
         JobError, SceneError: a file of the job cannot be read, or is of another scene.
+        UndescribedError: a variable is measured and not described, or described and not measured.
     """
     scene, status = scene_in(job.path), job.status()
     if particles.scene_hash != scene.hash():
@@ -90,7 +96,7 @@ def measure(job: JobDirectory, particles: Particles) -> Numbers:
     remnant = particles.select(labels == 0)
     change = shape_change(remnant, job)
     last = drifts(read_history(job.history), scene).isel(time=-1)
-    return (
+    return described(
         _masses(particles, labels, scene.bodies[0].mass)
         | _ellipsoid(remnant)
         | _hull(remnant)

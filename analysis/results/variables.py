@@ -90,6 +90,22 @@ OUTCOMES = {
 }
 """Numbers of one job, in the order of results.nc."""
 
+
+class UndescribedError(LookupError):
+    """What is measured and what `OUTCOMES` describes differ: an error of this program, not of a job."""
+
+
+def described(numbers: dict[str, float]) -> dict[str, float]:
+    """Return the numbers of one job in the order of `OUTCOMES`.
+
+    Raises:
+        UndescribedError: a number is not described, or one that is described was not measured.
+    """
+    if odd := sorted(numbers.keys() ^ OUTCOMES.keys()):
+        raise UndescribedError(f"measured or described in OUTCOMES, not both: {', '.join(odd)}")
+    return {name: numbers[name] for name in OUTCOMES}
+
+
 WITHOUT_ERROR = ("largest_thin", "settled", "time_after_contact")
 """Outcomes that are no measured numbers."""
 
