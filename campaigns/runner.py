@@ -10,11 +10,11 @@ from dask.distributed import Client, Future
 
 from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
-from campaigns.job_state import TrackedJob, states
-from campaigns.plan import decide
+from campaigns.job_state import TrackedJob, decide, states
 from campaigns.progress import Show
 from campaigns.worker import Outcome, run_job, signal_jobs
 from engine.errors import ExitCode
+from engine.job.directory import JobState
 
 PERIOD = 1.0
 """Time [s] between two looks at the disk."""
@@ -56,7 +56,7 @@ class Run:
             while True:
                 jobs = self._poll()
                 show(jobs)
-                if not self._futures and not any(job.status.state == "running" for job in jobs):
+                if not self._futures and not any(job.status.state == JobState.RUNNING for job in jobs):
                     return jobs
                 time.sleep(PERIOD)
         except BaseException:
@@ -87,7 +87,7 @@ class Run:
     def _with_reason(self, job: TrackedJob) -> TrackedJob:
         """The job with the reason its process gave, where the disk holds none."""
         outcome = self._outcomes.get(job.directory)
-        if outcome is None or job.status.state in ("done", "running") or job.status.reason:
+        if outcome is None or job.status.state in (JobState.DONE, JobState.RUNNING) or job.status.reason:
             return job
         return replace(job, status=replace(job.status, reason=outcome.reason))
 

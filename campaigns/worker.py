@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
-from campaigns.job_state import status_of
+from campaigns.job_state import decide, status_of
 from campaigns.parent_death import tethered
-from campaigns.plan import decide
 from engine.errors import ExitCode
 
 ENGINE = (sys.executable, "-m", "engine")
