@@ -25,7 +25,7 @@ def plots(campaign: Path) -> None:
     typer.echo(printed(shape_table(results)))
     for line in [*unresolved(results), *reasons(results)]:
         typer.echo(line)
-    if not (results["state"] == "done").any():
+    if not (results["state"] == JobState.DONE).any():
         typer.echo("no job of this campaign is done yet: table and figures show states only")
     typer.echo("written: " + ", ".join(str(path) for path in written))
     _fail_on_damage(results)
@@ -65,7 +65,7 @@ def remnant(job: Path) -> None:
 
 def _fail_on_damage(results: xr.Dataset) -> None:
     """Exit with code 1 when a job is damaged, also one that says it is done."""
-    if (results["state"] == JobState.CORRUPT.value).any():
+    if (results["state"] == JobState.CORRUPT).any():
         raise typer.Exit(ExitCode.FAILED)
 
 

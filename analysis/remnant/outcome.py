@@ -13,7 +13,7 @@ from analysis.remnant.settling import is_settled, shape_change
 from analysis.remnant.spin import spin_period
 from analysis.results.variables import DAMAGED, DRIFTS, UndescribedError, described
 from engine.errors import JobError, RunFault
-from engine.job.directory import JobDirectory
+from engine.job.directory import JobDirectory, JobState
 from engine.scene.scene import scene_in
 
 Numbers = dict[str, float]
@@ -27,12 +27,12 @@ class Outcome:
     """What became of one job.
 
     Attributes:
-        state: as in `Status`, or `corrupt`.
+        state: how the job stands.
         reason: one line on why there are no numbers, empty otherwise.
         numbers: the variables of `analysis.results.variables.OUTCOMES` of a job that is done, none of any other.
     """
 
-    state: str
+    state: JobState
     reason: str
     numbers: Numbers
 
@@ -49,18 +49,18 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
     """
     try:
         status = job.status()
-        if status.state != "done":
-            return Outcome(str(status.state), _line(status.reason), {})
+        if status.state != JobState.DONE:
+            return Outcome(JobState(status.state), _line(status.reason), {})
         particles = read_particles(job.final)
         if particles.physics_version != physics_version:
             raise JobError(f"computed with physics version {particles.physics_version}, not {physics_version}")
-        return Outcome("done", "", measure(job, particles))
+        return Outcome(JobState.DONE, "", measure(job, particles))
     except RunFault as fault:
-        return Outcome("failed", _line(fault), {})
+        return Outcome(JobState.FAILED, _line(fault), {})
     except UndescribedError:
         raise
     except Exception as error:  # whatever is wrong with one job must not hide the others
-        return Outcome("corrupt", f"{_line(error)}; {ANEW}", {})
+        return Outcome(JobState.CORRUPT, f"{_line(error)}; {ANEW}", {})
 
 
 def latest(job: JobDirectory) -> Particles:

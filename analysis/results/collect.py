@@ -88,7 +88,7 @@ def _numbers(campaign: KeptCampaign, outcomes: list[Outcome]) -> dict[str, xr.Da
 
 def _texts(campaign: KeptCampaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
     cells = [
-        {"state": found.state, "reason": found.reason, "job": job.id}
+        {"state": found.state.value, "reason": found.reason, "job": job.id}
         for job, found in zip(campaign.jobs, outcomes, strict=True)
     ]
     empty = {"state": JobState.MISSING.value, "reason": "", "job": ""}

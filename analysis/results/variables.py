@@ -3,6 +3,7 @@
 from analysis.remnant.ellipsoid import THIN
 from analysis.remnant.fragments import LINKING_LENGTH
 from analysis.remnant.settling import TOLERANCE, WINDOW
+from engine.job.directory import JobState
 from engine.quantities import CONSERVED, Quantity
 
 DAMAGED = 0.5
@@ -112,10 +113,10 @@ WITHOUT_ERROR = ("largest_thin", "settled", "time_after_contact")
 COSTS = ("steps", "wall_time", "cpu_time")
 """Outcomes that add up over the runs of a cell."""
 
+_STATES = ", ".join(state for state in JobState if state != JobState.MISSING)
+
 TEXTS = {
-    "state": Quantity(
-        "state of the job", "", "done, running, pending, interrupted, failed, corrupt, or missing without a job"
-    ),
+    "state": Quantity("state of the job", "", f"{_STATES}, or {JobState.MISSING} without a job"),
     "reason": Quantity("why the job has no outcome", ""),
     "job": Quantity("identifier of the job", ""),
 }

@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from analysis.report.figures.style import GREY, MARKERS, Directories, nothing_done, shades, styled
 from analysis.results.tables import cells, series
+from engine.job.directory import JobState
 
 Look = dict[str, Any]
 
@@ -29,7 +30,7 @@ def draw(results: xr.Dataset, directories: Directories) -> Figure:
 
     Bars are the errors of a study with error bars, else, over an axis of seeds, the standard deviation of one run.
     """
-    if not (results["state"] == "done").any():
+    if not (results["state"] == JobState.DONE).any():
         return nothing_done()
     figure = Figure(figsize=(7.8, 3.5), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)

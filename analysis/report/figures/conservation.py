@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from analysis.remnant.conservation import drifts, read_history
 from analysis.report.figures.style import BLUE, GREEN, ORANGE, PURPLE, Directories, nothing_done, shades, styled
 from analysis.results.tables import cells
-from engine.job.directory import JobDirectory
+from engine.job.directory import JobDirectory, JobState
 from engine.quantities import CONSERVED
 from engine.scene.scene import scene_in
 
@@ -38,7 +38,7 @@ def draw(results: xr.Dataset, directories: Directories) -> Figure:
         directories: job directory of each job id.
     """
     table = cells(results)
-    done = table[table["state"] == "done"]
+    done = table[table["state"] == JobState.DONE]
     if done.empty:
         return nothing_done()
     figure = Figure(figsize=(10.4, 4.6), layout="constrained")

@@ -11,7 +11,7 @@ from matplotlib.patches import Rectangle
 from analysis.report.figures.style import GREY, Directories, nothing_done, styled
 from analysis.report.figures.views import Frame, Views, frame_around, views_of
 from analysis.results.tables import series
-from engine.job.directory import JobDirectory
+from engine.job.directory import JobDirectory, JobState
 
 NAME = "remnants"
 CAPTION = "The largest remnant of every collision, along its shortest axis and edge-on."
@@ -38,7 +38,7 @@ def draw(results: xr.Dataset, directories: Directories) -> Figure:
     """
     groups = [rows.assign(series=title).drop_duplicates(["velocity", "angle"]) for title, rows in series(results)]
     shown = pd.concat(groups)
-    done = shown.loc[shown["state"] == "done", "job"]
+    done = shown.loc[shown["state"] == JobState.DONE, "job"]
     if done.empty:
         return nothing_done()
     views = dict(zip(done, views_of([JobDirectory(directories[job]).final for job in done]), strict=True))
@@ -92,7 +92,7 @@ def _missing(axes: Any, state: str) -> None:
 
 def _caption(cell: pd.Series) -> str:
     place = f"{cell['velocity']:g} m/s, {cell['angle']:g}°" + (f", {cell['series']}" if cell["series"] else "")
-    if cell["state"] != "done":
+    if cell["state"] != JobState.DONE:
         return place
     return f"{place}\n$M$ {cell['mass_ratio']:.2f}   $b/a$ {cell['b_over_a']:.2f}   $c/a$ {cell['c_over_a']:.2f}"
 

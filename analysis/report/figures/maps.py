@@ -12,6 +12,7 @@ from matplotlib.patheffects import withStroke
 
 from analysis.report.figures.style import GREY, Directories, styled
 from analysis.results.tables import series
+from engine.job.directory import JobState
 
 NAME = "maps"
 CAPTION = "Mass and axis ratios of the largest remnant over velocity and angle."
@@ -77,4 +78,4 @@ def _missing(axes: Any, column: int, row: int, state: object) -> None:
 
 def _least_done(states: pd.Series) -> str:
     """The first state that is not done, since a cell without a number has none done."""
-    return next((str(state) for state in states if state != "done"), "done")
+    return next((str(state) for state in states if state != JobState.DONE), JobState.DONE)
