@@ -7,6 +7,7 @@ import typer
 import xarray as xr
 
 from analysis.accuracy.report import report
+from analysis.remnant.fragments import clumps_of
 from analysis.remnant.outcome import latest, measure
 from analysis.report.products import plots as draw
 from analysis.results.collect import collect as collect_results
@@ -59,7 +60,7 @@ def remnant(job: Path) -> None:
     particles = latest(directory)
     if not directory.final.is_file():
         typer.echo(f"not done: last snapshot, {particles.time:g} s after contact")
-    for name, value in measure(directory, particles).items():
+    for name, value in measure(directory, particles, clumps_of(particles)).items():
         typer.echo(f"{name:24} {value:<14.6g} {OUTCOMES[name].units:7} {OUTCOMES[name].long_name}")
 
 

@@ -1,14 +1,15 @@
 """One job in, its outcome as a flat set of numbers out."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.remnant.conservation import drifts, read_history
 from analysis.remnant.ellipsoid import THIN, bulk_density, ellipsoid_of
 from analysis.remnant.fragments import as_points, bound_to_largest, clumps_of
 from analysis.remnant.hull import hull_of
-from analysis.remnant.particles import Particles, read_particles, snapshots
+from analysis.remnant.particles import Integers, Particles, read_particles, snapshots
 from analysis.remnant.settling import is_settled, shape_change
 from analysis.remnant.spin import spin_period
 from analysis.results.variables import DAMAGED, DRIFTS, UndescribedError, described
@@ -27,14 +28,30 @@ class Outcome:
     """What became of one job.
 
     Attributes:
+        job: its directory.
         state: how the job stands.
         reason: one line on why there are no numbers, empty otherwise.
         numbers: the variables of `analysis.results.variables.OUTCOMES` of a job that is done, none of any other.
+        in_remnant: whether each particle at the end is in the largest remnant, shape [particle_count]; empty likewise.
     """
 
+    job: JobDirectory
     state: JobState
-    reason: str
-    numbers: Numbers
+    reason: str = ""
+    numbers: Numbers = field(default_factory=dict)
+    in_remnant: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+
+    def read_remnant(self) -> Particles:
+        """Read the particles of the largest remnant of a job that is done.
+
+        Raises:
+            JobError, RunFault: as `read_particles`.
+        """
+        return read_particles(self.job.final).select(self.in_remnant)
+
+
+Outcomes = dict[str, Outcome]
+"""The outcome of each job of a campaign, by job id."""
 
 
 def outcome(job: JobDirectory, physics_version: int) -> Outcome:
@@ -50,17 +67,18 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
     try:
         status = job.status()
         if status.state != JobState.DONE:
-            return Outcome(JobState(status.state), _line(status.reason), {})
+            return Outcome(job, JobState(status.state), _line(status.reason))
         particles = read_particles(job.final)
         if particles.physics_version != physics_version:
             raise JobError(f"computed with physics version {particles.physics_version}, not {physics_version}")
-        return Outcome(JobState.DONE, "", measure(job, particles))
+        labels = clumps_of(particles)
+        return Outcome(job, JobState.DONE, numbers=measure(job, particles, labels), in_remnant=labels == 0)
     except RunFault as fault:
-        return Outcome(JobState.FAILED, _line(fault), {})
+        return Outcome(job, JobState.FAILED, _line(fault))
     except UndescribedError:
         raise
     except Exception as error:  # whatever is wrong with one job must not hide the others
-        return Outcome(JobState.CORRUPT, f"{_line(error)}; {ANEW}", {})
+        return Outcome(job, JobState.CORRUPT, f"{_line(error)}; {ANEW}")
 
 
 def latest(job: JobDirectory) -> Particles:
@@ -78,12 +96,13 @@ def latest(job: JobDirectory) -> Particles:
     return read_particles(taken[-1][1])
 
 
-def measure(job: JobDirectory, particles: Particles) -> Numbers:
+def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Numbers:
     """Measure every variable of `analysis.results.variables.OUTCOMES`.
 
     Args:
         job: the job directory, for its scene, history and snapshots.
         particles: its final state, or an earlier one.
+        labels: clump of each particle, from `clumps_of`, shape [particle_count].
 
     Raises:
         JobError, SceneError: a file of the job cannot be read, or is of another scene.
@@ -92,7 +111,6 @@ def measure(job: JobDirectory, particles: Particles) -> Numbers:
     scene, status = scene_in(job.path), job.status()
     if particles.scene_hash != scene.hash():
         raise JobError(f"{job.path}: holds particles that are not of the scene in this directory")
-    labels = clumps_of(particles)
     remnant = particles.select(labels == 0)
     change = shape_change(remnant, job)
     last = drifts(read_history(job.history), scene).isel(time=-1)
@@ -107,7 +125,7 @@ def measure(job: JobDirectory, particles: Particles) -> Numbers:
     )
 
 
-def _masses(particles: Particles, labels: np.ndarray, target: float) -> Numbers:
+def _masses(particles: Particles, labels: Integers, target: float) -> Numbers:
     clumps = as_points(labels, particles.mass, particles.position, particles.velocity)
     bound = clumps.mass[bound_to_largest(clumps)].sum()
     return {

@@ -1,6 +1,7 @@
 """Every job of a campaign in one data set, results.nc."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from analysis.campaign import NONE, Scalar, parameters, plain
-from analysis.remnant.outcome import Outcome, outcome
+from analysis.remnant.outcome import Outcome, Outcomes, outcome
 from analysis.results.error_bars import combine
 from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS
 from campaigns.campaign import KeptCampaign, read_campaign
@@ -21,8 +22,28 @@ ALWAYS = ("velocity", "angle", "end_time")
 """Parameters that are coordinates even when every job has the same."""
 
 
+@dataclass(frozen=True)
+class Collected:
+    """What is known of a campaign.
+
+    Attributes:
+        campaign: its description.
+        outcomes: of each of its jobs, by job id.
+        results: content of results.nc.
+    """
+
+    campaign: KeptCampaign
+    outcomes: Outcomes
+    results: xr.Dataset
+
+
 def collect(campaign_directory: Path) -> xr.Dataset:
-    """Measure every job, write results.nc into the campaign directory and return it.
+    """Measure every job of a campaign, write results.nc and return it; see `collect_with_outcomes`."""
+    return collect_with_outcomes(campaign_directory).results
+
+
+def collect_with_outcomes(campaign_directory: Path) -> Collected:
+    """Measure every job of a campaign and write results.nc into its directory.
 
     With error bars the jobs are in members.nc, and results.nc holds what they say together (see error_bars.py).
     Cells without an outcome are NaN and carry the state of their job. Parameters in which jobs differ are
@@ -32,15 +53,14 @@ def collect(campaign_directory: Path) -> xr.Dataset:
         SceneError: there is no campaign.json, or it does not describe a campaign.
     """
     campaign = read_campaign(campaign_directory, KeptCampaign)
-    outcomes = [
-        outcome(JobDirectory(campaign_directory / job.directory), campaign.physics_version) for job in campaign.jobs
-    ]
-    results = assemble(campaign, outcomes)
+    directories = {job.id: JobDirectory(campaign_directory / job.directory) for job in campaign.jobs}
+    outcomes = {name: outcome(directory, campaign.physics_version) for name, directory in directories.items()}
+    results = assemble(campaign, [outcomes[job.id] for job in campaign.jobs])
     if campaign.has_error_bars:
         write_dataset(campaign_directory / "members.nc", results)
         results = combine(results)
     write_dataset(campaign_directory / "results.nc", results)
-    return results
+    return Collected(campaign, outcomes, results)
 
 
 def assemble(campaign: KeptCampaign, outcomes: list[Outcome]) -> xr.Dataset:
