@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from analysis.campaign import NONE, Campaign, Scalar
+from analysis.campaign import NONE, Scalar, parameters
+from campaigns.campaign import KeptCampaign
 from engine.errors import SceneError
 
 BASE = "base"
@@ -30,7 +31,7 @@ class Case:
     particles: int
 
 
-def cases(campaign: Campaign) -> dict[str, Case]:
+def cases(campaign: KeptCampaign) -> dict[str, Case]:
     """Return all cases of a campaign by name.
 
     Raises:
@@ -43,7 +44,7 @@ def cases(campaign: Campaign) -> dict[str, Case]:
         )
     if BASE not in campaign.coords["case"]:
         raise SceneError(f"campaign {campaign.name}: has no case '{BASE}'; give the one to compare with that name")
-    tables = {str(job.index["case"]): job.parameters for job in campaign.jobs}
+    tables = {str(job.index["case"]): parameters(job) for job in campaign.jobs}
     return {name: _case(table, tables[BASE]) for name, table in tables.items()}
 
 

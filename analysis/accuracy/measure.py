@@ -6,13 +6,10 @@ import xarray as xr
 from analysis.accuracy.cases import BASE, RESOLUTION, Case
 from analysis.accuracy.orders import orders
 from analysis.results.statistics import Difference, count, difference, interval, paired_difference, resolved
-from analysis.results.variables import OUTCOMES
+from analysis.results.variables import DRIFTS, OUTCOMES
 
 MEASURED = ("mass_ratio", "b_over_a", "c_over_a", "bulk_density")
 """Outcomes that are compared."""
-
-DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
-"""Outcomes that are 0 without error."""
 
 _INTERVAL = "half the width of the 95 % confidence interval, Student's t over seeds"
 _PAIRED = (

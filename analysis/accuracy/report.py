@@ -7,10 +7,11 @@ import xarray as xr
 
 from analysis.accuracy.cases import cases
 from analysis.accuracy.figure import error_against_cost
-from analysis.accuracy.measure import DRIFTS, MEASURED, accuracy
-from analysis.campaign import read_campaign
+from analysis.accuracy.measure import MEASURED, accuracy
 from analysis.report.figures.style import save
 from analysis.results.collect import collect
+from analysis.results.variables import DRIFTS
+from campaigns.campaign import KeptCampaign, read_campaign
 from engine.errors import SceneError
 from engine.job.storage import write_dataset, write_text
 
@@ -27,7 +28,7 @@ def write_accuracy(campaign_directory: Path) -> tuple[xr.Dataset, str, list[Path
     Raises:
         SceneError: the campaign has other dimensions than case and seed, no case named base, or no finished run of it.
     """
-    known = cases(read_campaign(campaign_directory))
+    known = cases(read_campaign(campaign_directory, KeptCampaign))
     results = collect(campaign_directory)
     if not (results["state"].sel(case="base") == "done").any():
         raise SceneError(f"{campaign_directory}: no run of the case 'base' is done yet; run the campaign first")

@@ -14,8 +14,8 @@ from analysis.accuracy.figure import errors
 from analysis.accuracy.measure import accuracy
 from analysis.accuracy.orders import observed_order
 from analysis.accuracy.report import markdown
-from analysis.campaign import read_campaign
 from analysis.results.variables import OUTCOMES
+from campaigns.campaign import KeptCampaign, read_campaign
 from campaigns.expansion import expand
 from campaigns.study import find_study, read_study
 from engine.errors import SceneError
@@ -111,7 +111,7 @@ def test_runs_that_are_not_done_do_not_count() -> None:
 
 def test_the_shipped_study_varies_one_setting_a_case_but_for_fine_gravity(tmp_path: Path) -> None:
     write_json(tmp_path / "campaign.json", expand(read_study(find_study("accuracy")), "accuracy").content())
-    found = cases(read_campaign(tmp_path))
+    found = cases(read_campaign(tmp_path, KeptCampaign))
     assert found["base"].setting == "none"
     assert [name for name, case in found.items() if case.setting == "several"] == ["particles5000-fine-gravity"]
     assert found["viscosity.shear350000"] == Case("viscosity.shear", 3.5e5, 1000)
@@ -149,4 +149,4 @@ def test_another_campaign_is_refused(tmp_path: Path, coords: dict[str, list[obje
         tmp_path, coords, [({key: values[0] for key, values in coords.items()}, Collision(velocity=1, angle=5))]
     )
     with pytest.raises(SceneError, match=told):
-        cases(read_campaign(tmp_path))
+        cases(read_campaign(tmp_path, KeptCampaign))
