@@ -10,7 +10,7 @@ from typing import Protocol
 
 
 class EquationOfStateLaw(Protocol):
-    """Pressure and speed of sound (engine/physics.md, section 2)."""
+    """Pressure, speed of sound and reference density (engine/physics.md, section 2)."""
 
     def evaluate(self, p, mu, E, body):
         """Return the pressure [Pa] and the squared speed of sound [m^2/s^2].
@@ -21,6 +21,9 @@ class EquationOfStateLaw(Protocol):
             E: specific internal energy [J/kg].
             body: index of the body.
         """
+
+    def rho0(self, body):
+        """Return the density of the reference state [kg/m^3]."""
 
 
 class EnergyLaw(Protocol):
