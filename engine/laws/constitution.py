@@ -11,12 +11,12 @@ from engine.state.particles import Particles
 
 
 @ti.func
-def strain_increment(A):
-    """Logarithmic strain sym(ln(I + A)) of the displacement gradient A, to second order.
+def strain_increment(H):
+    """Logarithmic strain sym(ln(I + H)) of the displacement gradient H, to second order.
 
-    A step of rigid rotation stretches a little, -A^2 / 2: without it a spinning body would lose energy.
+    A step of rigid rotation stretches a little, -H^2 / 2: without it a spinning body would lose energy.
     """
-    return symmetric(A - 0.5 * (A @ A))
+    return symmetric(H - 0.5 * (H @ H))
 
 
 @ti.data_oriented
@@ -54,8 +54,8 @@ class Constitution:
             dt: time step [s].
         """
         body = self.particles.body[p]
-        rho0, A = self.eos.rho0(body), dt * L
-        growth, strain = determinant_increment(A), strain_increment(A)
+        rho0, H = self.eos.rho0(body), dt * L
+        growth, strain = determinant_increment(H), strain_increment(H)
         j = self.particles.j[p] + (1.0 + self.particles.j[p]) * growth
         half_work = 0.5 / rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E, D = self.energy.after(p, 2.0 * half_work), self.damage.value(p)
@@ -63,7 +63,7 @@ class Constitution:
         P, c2 = self.eos.evaluate(p, -j / J, E, body)
         if P < 0.0:
             P *= 1.0 - D
-        s = self.shear.stress(p, A, growth, J, P, E, D, body)
+        s = self.shear.stress(p, H, growth, J, P, E, D, body)
         stress, diffusivity = self.viscosity.stress(p, symmetric(L), rho0 / J, ti.sqrt(c2))
         tau = s + J * (stress - P * identity())
         self.particles.j[p], self.particles.tau[p] = j, pack(tau)

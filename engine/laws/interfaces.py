@@ -73,12 +73,12 @@ class GrowthLaw(Protocol):
 class ShearLaw(Protocol):
     """Deviatoric stress, limited by a strength (engine/physics.md, sections 3 and 4)."""
 
-    def stress(self, p, A, growth, J, P, E, D, body):
+    def stress(self, p, H, growth, J, P, E, D, body):
         """Return the deviatoric Kirchhoff stress [Pa] and store the elastic strain of particle p.
 
         Args:
             p: index of the particle.
-            A: displacement gradient dt L of the step [-].
+            H: displacement gradient dt L of the step [-].
             growth: det(I + H) - 1 [-].
             J: rho0/rho after the step [-].
             P: pressure [Pa].
