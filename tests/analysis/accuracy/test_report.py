@@ -2,15 +2,17 @@
 
 from pathlib import Path
 
+import matplotlib.image
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.colors import same_color
 from typer.testing import CliRunner
 
 from analysis.__main__ import app
 from analysis.accuracy.cases import Case, cases
-from analysis.accuracy.figure import errors
+from analysis.accuracy.figure import error_against_cost, errors
 from analysis.accuracy.measure import accuracy
 from analysis.accuracy.orders import observed_order
 from analysis.accuracy.report import markdown
@@ -138,7 +140,28 @@ def test_the_command_writes_data_figure_and_tables(tmp_path: Path) -> None:
     found = read_dataset(tmp_path / "accuracy.nc")
     assert found["setting"].values.tolist() == ["none", "particles", "viscosity.shear"]
     assert all(found[name].attrs["units"] for name in found.data_vars)
-    assert (tmp_path / "accuracy.png").stat().st_size > 10000
+    assert matplotlib.image.imread(tmp_path / "accuracy.png").shape[0] > 500
+
+
+def test_the_figure_shows_the_error_of_each_case_against_its_time_and_what_no_other_case_beats() -> None:
+    some = results(0.1)
+    some["cpu_time"] = ("case", "seed"), np.outer([1.0, 2.0, 8.0, 64.0, 3.0], np.ones(3))
+    found = accuracy(some, known())
+    figure = error_against_cost(found)
+    titles = ["$M_\\mathrm{lr}\\,/\\,M_\\mathrm{target}$", "$b/a$", "$c/a$", "bulk density [kg m-3]"]
+    assert [axes.get_title() for axes in figure.axes] == titles
+    assert (figure.get_supxlabel(), figure.get_supylabel()) == ("CPU time of a run [s]", "difference to particles32000")
+    frame = errors(found, "b_over_a")
+    for axes in figure.axes:
+        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+        front, *points = axes.lines
+        drawn = {(float(line.get_xdata()[0]), float(line.get_ydata()[0])) for line in points}
+        assert drawn == set(zip(frame["cpu_time"], frame["error"], strict=True)), "all outcomes here are the same"
+        assert set(zip(front.get_xdata(), front.get_ydata(), strict=True)) < drawn
+        hollow = [line for line in points if same_color(line.get_markerfacecolor(), "white")]
+        assert len(hollow) == (~frame["resolved"]).sum() > 0
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert legend == ["particles", "base", "numerics.cfl", "not resolved", "no case beats these"]
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.colors import same_color
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 import engine.simulation.guard
@@ -50,7 +52,11 @@ def recorded() -> pd.DataFrame:
     return pd.read_csv(RECORDED, dtype={"name": str}, keep_default_na=False).set_index(["group", "name"])
 
 
-def test_the_page_s_table_is_of_these_cases_and_none_failed() -> None:
+def test_the_committed_table_is_fresh_of_exactly_the_cases_in_the_code_and_none_of_them_failed() -> None:
+    """A check of the file, not of the engine: whoever adds, renames or removes a case must run the matrix anew.
+
+    That its verdicts are those of the engine, `FAST` cases test here and all cases in the slow tests.
+    """
     table = recorded()
     assert list(table.index) == list(BY_NAME)
     assert set(table["verdict"]) == {STABLE, STOPPED}
@@ -173,12 +179,38 @@ def test_results_are_written_with_units_and_counted_by_group(tmp_path: Path) -> 
     results = dataset(outcomes, [Limit("1 x 1 x 1", 1.001, 1.0)])
     write(tmp_path, results)
     assert read_dataset(tmp_path / "stability.nc").identical(results)
-    assert (tmp_path / "stability.png").stat().st_size > 0
+    assert (tmp_path / "stability.png").is_file()
     assert all(set(results[name].attrs) == {"long_name", "units"} for name in results.data_vars)
     table = pd.read_csv(tmp_path / "stability.csv")
     assert list(table["verdict"]) == [STABLE, STOPPED, FAILED] and (table["nearest"] == 0.5).all()
     counts = summary(results)[[STABLE, STOPPED, FAILED]]
     assert counts.loc["a"].tolist() == [1, 1, 0] and counts.loc["b"].tolist() == [0, 0, 1]
+
+
+def test_the_figure_has_a_row_for_each_group_and_a_cell_for_each_case_coloured_by_its_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cases = pd.DataFrame(
+        [("a", "1", STABLE, 0.9), ("a", "2", STABLE, 0.1), ("b", "3", STOPPED, 0.5), ("b", "4", FAILED, np.nan)],
+        columns=["group", "name", "verdict", "dissipation"],
+    )
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *given, **options: drawn.append(figure))
+    heat_map.draw(cases, tmp_path / "stability.png")
+    axes, scale = drawn[0].axes
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "b"]
+    assert axes.get_ylim() == (2.0, 0.0), "the first group is at the top"
+    assert {text.get_text(): text.get_position() for text in axes.texts} == {
+        "1": (0.5, 0.5),
+        "2": (1.5, 0.5),
+        "3": (0.5, 1.5),
+        "4": (1.5, 1.5),
+    }
+    much, little, stopped, failed = (patch.get_facecolor() for patch in axes.patches)
+    assert sum(much[:3]) < sum(little[:3]), "the more energy is lost, the darker"
+    assert same_color(stopped, heat_map.COLORS[STOPPED]) and same_color(failed, heat_map.COLORS[FAILED])
+    assert "energy lost" in scale.get_ylabel() and scale.get_ylim() == (0.0, 1.0)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == list(heat_map.COLORS)
 
 
 def test_a_directory_that_exists_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
