@@ -6,12 +6,12 @@ from typing import Any
 
 import taichi as ti
 
-from engine.device.backend import Real
+from engine.laws.equation_of_state import MaterialConstants
 from engine.scene.material import Material
 
 
 @ti.data_oriented
-class Algebraic:
+class Algebraic(MaterialConstants):
     """Pressure and sound speed by the formula of an equation of state on the host.
 
     Args:
@@ -20,11 +20,7 @@ class Algebraic:
     """
 
     def __init__(self, formula: Callable[..., Any], materials: Sequence[Material]) -> None:
-        constants = [{"rho0": material.rho0, **material.eos.constants()} for material in materials]
-        self.table = ti.types.struct(**dict.fromkeys(constants[0], Real)).field(shape=len(materials))
-        for i, values in enumerate(constants):
-            for name, value in values.items():
-                getattr(self.table, name)[i] = value
+        super().__init__(materials)
         self.formula = device_function(formula)
 
     @ti.func

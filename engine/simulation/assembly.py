@@ -27,7 +27,7 @@ from engine.state.particles import Particles
 
 def constitution(scene: Scene, particles: Particles) -> Constitution:
     """The response of matter."""
-    physics, materials = scene.physics, scene.materials
+    physics = scene.physics
     return Constitution(
         particles,
         _equation_of_state(scene),
@@ -35,7 +35,6 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
         _shear(scene, particles),
         _damage(scene, particles),
         Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
-        materials,
     )
 
 

@@ -66,7 +66,6 @@ class MaterialPoint:
             Hencky(self.particles, Strength(materials) if strength else Unlimited(), materials) if shear else Fluid(),
             Damage(self.particles, fracture or Unbreakable()),
             viscosity or Inviscid(),
-            materials,
         )
         self.wave_speed = np.zeros(count, HOST_REAL)
 

@@ -11,7 +11,7 @@ TESTS = Path(__file__).parents[1] / "engine"
 
 LAWS = {
     "tensors": "logarithms, eigenvalues",
-    "deform": "deformation",
+    "shear": "deformation",
     "tillotson": "Tillotson pressure",
     "algebraic": "Murnaghan pressure",
     "strength": "strength",

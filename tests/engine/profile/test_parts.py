@@ -113,7 +113,7 @@ def test_an_elastic_column_pays_for_elasticity_alone(monkeypatch):
     simulation, names = code(StandingWave(8).scene, monkeypatch)
     assert held(simulation) == {"b_minus_I", "E"}
     owners = {part.name for part in parts_of(simulation) if part.fields}
-    assert owners == {"particles", "clock", "transfer", "constitution", "eos", "energy", "shear"}
+    assert owners == {"particles", "clock", "transfer", "eos", "energy", "shear"}
     assert not [part for part in PARTS if part not in ("energy", "shear") and runs(part, names)]
 
 
