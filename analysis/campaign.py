@@ -10,9 +10,6 @@ from engine.scene.fields import read_table, validate
 
 Scalar = float | int | str
 
-OVERRULED = "material.damaged_friction"
-"""A parameter whose place `friction`, or else `parameter_set`, takes in a collision."""
-
 NONE = "none"
 """What stands for a parameter that is not set, since netCDF knows no null."""
 
@@ -30,7 +27,7 @@ class Job(BaseModel):
     @property
     def parameters(self) -> dict[str, Scalar]:
         """The parameters of the collision by dotted key: `viscosity.shear` for `viscosity: {shear}`."""
-        return {key: value for key, value in flatten(self.collision).items() if key != OVERRULED}
+        return flatten(self.collision)
 
 
 class Campaign(BaseModel):

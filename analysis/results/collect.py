@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from analysis.campaign import NONE, Campaign, Scalar, plain, read_campaign
 from analysis.remnant.outcome import Outcome, outcome
 from analysis.results.error_bars import combine
-from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS, Variable
+from analysis.results.variables import OUTCOMES, TEXTS, parameter
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
 
@@ -114,4 +114,4 @@ def _column(values: Sequence[Scalar]) -> NDArray[Any]:
 
 
 def _attributes(name: str) -> dict[str, str]:
-    return PARAMETERS.get(name, Variable(name.replace("_", " "), "")).attributes()
+    return parameter(name).attributes()

@@ -14,7 +14,7 @@ from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import Tillotson
 from engine.laws.viscosity import Inviscid
-from engine.scene.material import Material
+from engine.scene.material import named
 from engine.state.particles import Particles
 from tests.helpers.device import Array
 
@@ -39,7 +39,7 @@ class Points:
         viscosity: Any = None,
         friction: float = 0.839,
     ) -> None:
-        materials = [Material(damaged_friction=friction)]
+        materials = [named("basalt", friction=friction)]
         self.particles = Particles(count)
         self.constitution = Constitution(
             self.particles,

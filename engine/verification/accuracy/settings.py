@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.scene.material import Material
+from engine.scene.material import named
 from engine.verification.problems.bar import Pull
 from engine.verification.problems.cliff import Cliff
 from engine.verification.problems.collapse import Fall
@@ -60,7 +60,7 @@ def _share(found: float, exact: float) -> float:
 
 
 def _wave(cells: int) -> float:
-    return _share(StandingWave(cells).speed, Material().longitudinal_speed)
+    return _share(StandingWave(cells).speed, named("basalt").longitudinal_speed)
 
 
 def _fall(particles: int) -> float:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from engine.scene.bodies import Sphere
 from engine.scene.collision import Collision
-from engine.scene.material import Material
+from engine.scene.material import Material, named
 from engine.scene.scene import Physics, Scene
 from engine.state.particles import Arrays
 from engine.verification.harness import altered
@@ -46,19 +46,22 @@ class Case:
     physical: bool = True
 
 
-def impact(velocity: float = 200.0, angle: float = 15.0, share: float = 1.0, **settings: Any) -> Scene:
+def impact(
+    velocity: float = 200.0, angle: float = 15.0, share: float = 1.0, radius: float = 50e3, **settings: Any
+) -> Scene:
     """Two bodies of R = 50 km that meet, until they could be two diameters apart or 2,000 s are over.
 
     Args:
         velocity: at contact [m/s].
         angle: impact angle [deg].
         share: of that time.
+        radius: of the target, and of the projectile unless it has its own [m].
         settings: of the collision.
     """
+    end_time = share * min(8.0 * radius / velocity, 2000.0)
+    own = {"velocity": velocity, "angle": angle, "target": {"radius": radius}, "end_time": end_time}
     chosen = {"particles": PARTICLES, "start_separation": 1.1, **settings}
-    end_time = share * min(8.0 * chosen.get("radius", 50e3) / velocity, 2000.0)
-    scene = Collision.model_validate({"velocity": velocity, "angle": angle, "end_time": end_time, **chosen}).scene()
-    return with_rows(scene)
+    return with_rows(Collision.model_validate({**own, **chosen}).scene())
 
 
 def alone(
@@ -87,7 +90,7 @@ def in_single_precision(scene: Scene) -> Scene:
 
 def stiffened(factor: float) -> Material:
     """Basalt of other elastic moduli."""
-    return Material().slowed(factor**0.5)
+    return named("basalt").slowed(factor**0.5)
 
 
 def with_materials(scene: Scene, *materials: Material) -> Scene:
