@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 from analysis.campaign import NONE, Scalar, parameters, plain
 from analysis.remnant.outcome import Outcome, Outcomes, outcome
 from analysis.results.error_bars import combine
-from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS
+from analysis.results.variables import OUTCOMES, TEXTS, parameter
 from campaigns.campaign import KeptCampaign, read_campaign
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
-from engine.quantities import Quantity
 
 ALWAYS = ("velocity", "angle", "end_time")
 """Parameters that are coordinates even when every job has the same."""
@@ -136,4 +135,4 @@ def _column(values: Sequence[Scalar]) -> NDArray[Any]:
 
 
 def _attributes(name: str) -> dict[str, str]:
-    return PARAMETERS.get(name, Quantity(name.replace("_", " "), "")).attributes()
+    return parameter(name).attributes()

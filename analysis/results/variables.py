@@ -5,6 +5,8 @@ from analysis.remnant.fragments import LINKING_LENGTH
 from analysis.remnant.settling import TOLERANCE, WINDOW
 from engine.job.directory import JobState
 from engine.quantities import CONSERVED, Quantity
+from engine.scene.collision import Collision
+from engine.scene.keys import meaning_of, unit_of
 
 DAMAGED = 0.5
 """A particle with more damage than this counts as damaged."""
@@ -122,20 +124,13 @@ TEXTS = {
 }
 """Texts of one job."""
 
-Variable = Quantity
+PARAMETERS = {"case": Quantity("name of the case", "")}
+"""Coordinates of results.nc that are no keys of a collision; others keep their own name and no unit."""
 
-PARAMETERS = {
-    "velocity": Variable("relative speed at point-mass contact", "m s-1"),
-    "angle": Variable("impact angle", "degree", "0 is head-on"),
-    "end_time": Variable("simulated time after point-mass contact", "s"),
-    "radius": Variable("radius of the target", "m"),
-    "projectile_radius": Variable("radius of the projectile", "m"),
-    "particles": Variable("particles in the target", "1"),
-    "seed": Variable("seed of the particles and flaws", "1"),
-    "friction": Variable("friction coefficient of damaged rock", "1"),
-    "sound_speed": Variable("factor on the speed of sound", "1", "below 1 a late-stage approximation"),
-    "viscosity.shear": Variable("kinematic shear viscosity", "m2 s-1"),
-    "viscosity.bulk": Variable("kinematic bulk viscosity", "m2 s-1"),
-    "case": Variable("name of the case", ""),
-}
-"""Parameters of a study with a known unit; others keep their own name and no unit."""
+
+def parameter(key: str) -> Quantity:
+    """Return what a coordinate or attribute of results.nc is: the meaning and unit of the dotted key of a collision."""
+    meaning = meaning_of(Collision, key)
+    if meaning is None:
+        return PARAMETERS.get(key, Quantity(key.replace("_", " "), ""))
+    return Quantity(meaning, unit_of(Collision, key) or "")

@@ -91,7 +91,7 @@ def _stress(e: float, D: Array, m: Material) -> Array:
     mu = np.expm1(-e)
     pressure = (1.0 - D) * m.eos.pressure(m.rho0, mu, 0.0)
     root_J2 = 2.0 * m.shear_modulus * np.exp(-e) * e / np.sqrt(3.0)
-    shear = np.minimum(root_J2, (1.0 - D) * m.cohesion)
+    shear = np.minimum(root_J2, (1.0 - D) * m.known("cohesion"))
     return np.asarray(2.0 / np.sqrt(3.0) * shear - pressure)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 from engine.scene.bodies import Box
-from engine.scene.material import Material
+from engine.scene.material import named
 from engine.scene.scene import Numerics, Physics, Scene
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check
@@ -53,7 +53,7 @@ class StandingWave:
     @property
     def period(self) -> float:
         """Exact period [s], wavelength over sqrt((K + 4G/3)/rho)."""
-        return self.length / (self.sound_speed * Material().longitudinal_speed)
+        return self.length / (self.sound_speed * named("basalt").longitudinal_speed)
 
     @property
     def scene(self) -> Scene:
@@ -103,7 +103,7 @@ class Column:
     def checks(self, harness: Harness) -> list[Check]:
         """Speed and damping at the finest resolution, and the order of convergence of the speed."""
         waves = [StandingWave(cells) for cells in self.cells]
-        exact = Material().longitudinal_speed
+        exact = named("basalt").longitudinal_speed
         measured = [wave.measure(harness) for wave in waves]
         errors = [abs(wave.speed - exact) for wave in measured]
         order = fitted_order([wave.dx for wave in waves], errors)

@@ -7,15 +7,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from engine.scene.bodies import Box
-from engine.scene.material import Material
+from engine.scene.material import Material, named
 from engine.scene.murnaghan import MurnaghanParameters
 from engine.scene.scene import Numerics, Physics, Scene, ViscosityCoefficients
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check
 from engine.verification.harness import Array, Harness, State
 
-BASALT = Material()
-MURNAGHAN = Material(eos=MurnaghanParameters(K=2.67e10, n=4.0))
+BASALT = named("basalt")
+MURNAGHAN = named("basalt", eos=MurnaghanParameters(K=2.67e10, n=4.0))
 
 PLATEAU = (0.3, 0.8)
 """Where the state behind the front is measured, over its distance: off the heated plane and the front itself."""

@@ -1,7 +1,6 @@
 """Materials of verification problems: simple limits of Tillotson's rock."""
 
-from engine.scene.material import Material
-from engine.scene.tillotson import TillotsonParameters
+from engine.scene.material import Material, named
 
 NEGLIGIBLE = 1e-12
 """Grueneisen constants so small that heat makes no pressure."""
@@ -15,5 +14,5 @@ def elastic(rho0: float, bulk: float, shear: float, friction: float = 0.0) -> Ma
         bulk, shear: moduli [Pa].
         friction: coefficient mu_d once damaged [-].
     """
-    cold = TillotsonParameters(a=NEGLIGIBLE, b=NEGLIGIBLE, A=bulk, B=0.0)
-    return Material(rho0=rho0, eos=cold, shear_modulus=shear, damaged_friction=friction)
+    cold = {"a": NEGLIGIBLE, "b": NEGLIGIBLE, "A": bulk, "B": 0.0}
+    return named("basalt", rho0=rho0, eos=cold, shear_modulus=shear, friction=friction)

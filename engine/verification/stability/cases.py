@@ -57,7 +57,9 @@ def _materials() -> list[Case]:
         Case("contrast", f"{a:g} on {b:g}", with_materials(impact(fraction=0.5), stiffened(b), stiffened(a)))
         for a, b in pairs
     ]
-    frictions = [Case("friction", f"{mu:g}", broken(impact(friction=mu))) for mu in (0.0, 2.0, 100.0)]
+    frictions = [
+        Case("friction", f"{mu:g}", broken(impact(materials={"basalt": {"friction": mu}}))) for mu in (0.0, 2.0, 100.0)
+    ]
     return moduli + contrasts + frictions
 
 
@@ -68,11 +70,12 @@ def _impacts() -> list[Case]:
     fine = {"velocity": 2e4, "particles": 300}
     finer = [Case("speed", f"20000 m/s, 2 x 300, seed {seed}", impact(**fine, seed=seed)) for seed in (2, 3)]
     angles = [Case("angle", f"{angle:g} deg", impact(angle=angle)) for angle in (0.0, 45.0, 80.0, 89.9)]
-    small = {"particles": 1000, "projectile_radius": 5e3}
+    small = {"radius": 5e3}
     ratios = [
-        Case("mass ratio", f"1:1000 at {v:g} m/s", impact(velocity=v, fraction=0.1, **small)) for v in (200.0, 5e3)
+        Case("mass ratio", f"1:1000 at {v:g} m/s", impact(v, fraction=0.1, particles=1000, projectile=small))
+        for v in (200.0, 5e3)
     ]
-    ratios.append(Case("mass ratio", "1:8", impact(projectile_radius=25e3)))
+    ratios.append(Case("mass ratio", "1:8", impact(projectile={"radius": 25e3})))
     sizes = [
         Case("radius", "100 m", impact(radius=100.0)),
         Case("radius", "10 km", impact(radius=10e3)),

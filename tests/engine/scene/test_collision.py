@@ -6,16 +6,18 @@ from scipy.integrate import solve_ivp
 
 from engine.errors import SceneError
 from engine.scene.collision import Collision
+from engine.scene.collision_bodies import Projectile
 from engine.scene.fields import validate
-from engine.scene.material import PARAMETER_SETS, FractureRules
+from engine.scene.parameter_sets import PARAMETER_SETS
 from engine.scene.scene import Scene, Sphere
+from tests.helpers.parameter_sets import rules_of
 
 G_N = 6.6743e-11
 SETTINGS = {
     "velocity": st.floats(55.0, 2000.0),
     "angle": st.floats(0.0, 89.0),
-    "radius": st.floats(1e3, 6e4),
-    "projectile_radius": st.one_of(st.none(), st.floats(1e3, 6e4)),
+    "target": st.fixed_dictionaries({"radius": st.floats(1e3, 6e4)}),
+    "projectile": st.fixed_dictionaries({"radius": st.one_of(st.none(), st.floats(1e3, 6e4))}),
     "particles": st.integers(1, 4000),
 }
 
@@ -36,7 +38,8 @@ def weighted(bodies: tuple[Sphere, ...], vectors: list[tuple[float, ...]]) -> np
 @given(st.fixed_dictionaries(SETTINGS))
 def test_masses_and_rest_of_the_centre_of_mass(settings):
     scene = Collision.model_validate(settings).scene()
-    radii = [settings["radius"], settings["projectile_radius"] or settings["radius"]]
+    radius = settings["target"]["radius"]
+    radii = [radius, settings["projectile"]["radius"] or radius]
     for body, radius in zip(scene.bodies, radii, strict=True):
         assert body.mass == pytest.approx(2700.0 * 4.0 / 3.0 * np.pi * radius**3, rel=1e-14)
     # positions and velocities carry ten digits
@@ -56,7 +59,7 @@ def test_particles_of_both_bodies_have_nearly_one_mass(settings):
 
 @given(v=st.floats(70.0, 500.0), angle=st.floats(0.0, 80.0), small=st.floats(1e4, 5e4))
 def test_falling_together_from_the_start_the_bodies_meet_as_asked(v, angle, small):
-    scene = Collision(velocity=v, angle=angle, projectile_radius=small).scene()
+    scene = Collision(velocity=v, angle=angle, projectile=Projectile(radius=small)).scene()
     mu = G_N * sum(body.mass for body in scene.bodies)
     path = solve_ivp(
         lambda t, y: np.concatenate([y[3:], -mu * y[:3] / np.linalg.norm(y[:3]) ** 3]),
@@ -90,11 +93,11 @@ def test_without_gravity_bodies_fly_straight_and_start_without_pressure():
 @pytest.mark.parametrize(("name", "friction", "flaws"), [("sugiura2018", 0.839, "covered"), ("talk", 0.945, "2NlnN")])
 def test_a_parameter_set_fixes_friction_and_fracture_unless_they_are_given(name, friction, flaws):
     scene = Collision(velocity=200.0, angle=15.0, parameter_set=name).scene()
-    assert [body.material.damaged_friction for body in scene.bodies] == [friction, friction]
+    assert [body.material.friction for body in scene.bodies] == [friction, friction]
     assert scene.physics.fracture.flaws == flaws
-    other = {"friction": 0.5, "fracture": {"flaws": "2NlnN", "growth_speed": 0.3}}
+    other = {"materials": {"basalt": {"friction": 0.5}}, "fracture": {"flaws": "2NlnN", "growth_speed": 0.3}}
     scene = Collision.model_validate({"velocity": 200, "angle": 15, "parameter_set": name, **other}).scene()
-    assert scene.bodies[0].material.damaged_friction == 0.5
+    assert scene.bodies[0].material.friction == 0.5
     assert scene.physics.fracture.growth_speed == 0.3
 
 
@@ -102,9 +105,9 @@ def test_a_parameter_set_fixes_friction_and_fracture_unless_they_are_given(name,
 def test_a_rule_of_fracture_leaves_the_others_of_the_set(name):
     given = {"velocity": 200.0, "angle": 15.0, "parameter_set": name, "fracture": {"growth_range": 2.0}}
     collision = Collision.model_validate(given)
-    rules = PARAMETER_SETS[name].fracture.model_copy(update={"growth_range": 2.0})
+    rules = rules_of(name).model_copy(update={"growth_range": 2.0})
     assert collision.scene().physics.fracture == rules
-    assert Collision.model_validate(given | {"fracture": FractureRules(growth_range=2.0)}) == collision
+    assert Collision.model_validate(given | {"fracture": rules}) == collision
     assert Collision.model_validate_json(collision.canonical()) == collision
 
 
@@ -119,7 +122,7 @@ def test_false_leaves_parts_out():
 
 @given(st.fixed_dictionaries(SETTINGS))
 def test_equal_numbers_make_equal_jobs(settings):
-    as_floats = {key: value if value is None else float(value) for key, value in settings.items()}
+    as_floats = {key: float(value) if isinstance(value, int) else value for key, value in settings.items()}
     reversed_order = dict(reversed(settings.items()))
     one = Collision.model_validate(settings)
     for same in (Collision.model_validate(as_floats), Collision.model_validate(reversed_order)):
@@ -139,30 +142,40 @@ BAD = {
     "no speed": ({"velocity": 0.0}, "'velocity'", "greater than 0", "0.0"),
     "no number": ({"velocity": "fast"}, "'velocity'", "number", "'fast'"),
     "not a number": ({"velocity": float("nan")}, "'velocity'", "nan"),
-    "infinite": ({"radius": float("inf")}, "'radius'", "finite", "inf"),
+    "infinite": ({"target": {"radius": float("inf")}}, "'target.radius'", "finite", "inf"),
     "backward": ({"angle": -1.0}, "'angle'", "greater than or equal to 0", "-1.0"),
     "beyond grazing": ({"angle": 91.0}, "'angle'", "less than or equal to 90", "91.0"),
     "fraction of a particle": ({"particles": 10.5}, "'particles'", "10.5"),
-    "misspelt": ({"raduis": 1e4}, "unknown key 'raduis'", "did you mean 'radius'"),
+    "misspelt": ({"target": {"raduis": 1e4}}, "unknown key 'target.raduis'", "did you mean 'radius'"),
     "misspelt within": ({"numerics": {"cfi": 0.1}}, "unknown key 'numerics.cfi'", "did you mean 'cfl'"),
-    "misspelt material": ({"material": {"eos": {"e0": 1.0}}}, "material.eos.e0", "did you mean 'E0'"),
+    "misspelt material": (
+        {"materials": {"basalt": {"eos": {"e0": 1.0}}}},
+        "materials.basalt.eos.e0",
+        "did you mean 'E0'",
+    ),
     "misspelt set": ({"parameter_set": "tolk"}, "unknown parameter_set 'tolk'", "did you mean 'talk'"),
     "start inside": ({"start_separation": 1.0}, "'start_separation'", "greater than 1", "1.0"),
     "ends at contact": ({"end_time": 0.0}, "end_time", "0.0", "greater than 0"),
     "large step": ({"numerics": {"cfl": 1.5}}, "'numerics.cfl'", "1.5"),
-    "friction in the material": ({"material": {"damaged_friction": 0.5}}, "'material'", "give 'friction'"),
-    "yes for fracture": ({"fracture": True}, "'fracture'", "a table of keys or False", "True"),
+    "yes for fracture": ({"fracture": True}, "'fracture'", "a table of keys", "True"),
     "misspelt rule": ({"fracture": {"growth": 1}}, "unknown key 'fracture.growth'", "did you mean 'growth_"),
     "nonsense flaws": ({"fracture": {"flaws": "many"}}, "'fracture.flaws'", "'covered' or '2NlnN'", "'many'"),
     "switch for a speed": ({"velocity": True}, "'velocity'", "a number, not true or false", "True"),
     "switch for a seed": ({"seed": False}, "'seed'", "a number, not true or false", "False"),
-    "switch for what has a default": ({"friction": False}, "'friction'", "a number, not true or false"),
+    "switch for what has a default": ({"sound_speed": False}, "'sound_speed'", "a number, not true or false"),
     "too many particles": ({"particles": 10**10}, "'particles'", "less than or equal to 1073741824"),
     "too many particles in the projectile": (
-        {"projectile_radius": 1e7},
-        "'projectile_radius' 10000000.0 m",
+        {"projectile": {"radius": 1e7}},
+        "'projectile.radius' 10000000.0 m",
         "at most 1.89e+06 m",
     ),
+    "no table of materials": ({"materials": 3}, "'materials'", "a table of keys", "3"),
+    "misspelt choice of material": ({"target": {"material": "icee"}}, "'target.material'", "did you mean 'ice'"),
+    "misspelt constants": ({"materials": {"bsalt": {"friction": 1}}}, "'bsalt'", "did you mean 'basalt'", "rho0"),
+    "key of a material": ({"rho0": 1.0}, "unknown key 'rho0'", "did you mean 'materials.NAME.rho0'"),
+    "no day": ({"target": {"spin_period": 0.0}}, "'target.spin_period'", "greater than 0", "0.0"),
+    "turned over twice": ({"target": {"spin_obliquity": 200}}, "'target.spin_obliquity'", "equal to 180", "200"),
+    "name with a dot": ({"materials": {"a.b": {}}}, "'materials.a.b'", "pattern"),
     "key of numerics": ({"precision": "f32"}, "unknown key 'precision'", "did you mean 'numerics.precision'"),
     "negative seed": ({"seed": -1}, "'seed'", "-1"),
 }

@@ -15,9 +15,8 @@ from engine.job.checkpoint import save_checkpoint
 from engine.job.directory import JobDirectory, Status
 from engine.job.session import Options, Run
 from engine.scene.collision import Collision
-from engine.scene.material import Material
+from engine.scene.material import named
 from engine.scene.scene import Physics, Scene, Wall
-from engine.scene.tillotson import TillotsonParameters
 from engine.simulation.bounds import compression_limit, energy_growth, speed_scale
 from engine.simulation.conservation import Row, as_row, totals
 from engine.simulation.guard import ENERGY_GROWTH, LARGEST_DRIFT, SPEED_FACTOR, STEPS_FACTOR, Guard
@@ -27,6 +26,7 @@ from tests.helpers.jobs import write_job
 from tests.helpers.scenes import body, scene
 
 COUNT = 20
+BASALT = named("basalt")
 
 
 def collision(**changes: Any) -> Scene:
@@ -132,8 +132,8 @@ def test_a_compression_beyond_the_energy_of_the_bound_is_named():
 
 
 def test_the_bound_of_compression_uses_the_energy_up_and_soft_matter_has_none():
-    assert Material().eos.cold_energy(2700.0, compression_limit(Material(), 5e6)) == pytest.approx(5e6)
-    soft = Material(eos=TillotsonParameters(A=1.0, B=0.0))
+    assert BASALT.eos.cold_energy(2700.0, compression_limit(BASALT, 5e6)) == pytest.approx(5e6)
+    soft = named("basalt", eos={"A": 1.0, "B": 0.0})
     assert compression_limit(soft, 5e6) == np.inf
 
 

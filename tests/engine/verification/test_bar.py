@@ -5,11 +5,12 @@ import pytest
 
 from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture
-from engine.scene.material import PARAMETER_SETS, Material
 from engine.scene.scene import Sphere
+from engine.scene.material import named
 from engine.verification.material_point import MaterialPoint
 from tests.helpers.device import Array, worst
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
+from tests.helpers.parameter_sets import rules_of
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -21,13 +22,13 @@ CRACK_SPEED = {"sugiura2018": 0.4, "talk": 0.5}
 
 
 def drawn(name: str) -> Flaws:
-    return draw_flaws(BODY, PARAMETER_SETS[name].fracture, np.random.default_rng(1))
+    return draw_flaws(BODY, rules_of(name), np.random.default_rng(1))
 
 
 def engine_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     """Axial stress [Pa] and damage of every particle, shape [STEPS, particles]."""
-    fracture = Fracture([BODY], PARAMETER_SETS[name].fracture, drawn(name))
-    material = Material(damaged_friction=FRICTION[name])
+    fracture = Fracture([BODY], rules_of(name), drawn(name))
+    material = named("basalt", friction=FRICTION[name])
     points = MaterialPoint(BODY.particles, material, strength=True, fracture=fracture)
     stress, damage = [], []
     for _ in range(STEPS):
