@@ -5,8 +5,8 @@ import pytest
 
 from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture
-from engine.scene.scene import Sphere
 from engine.scene.material import named
+from engine.scene.scene import Sphere
 from engine.verification.material_point import MaterialPoint
 from tests.helpers.device import Array, worst
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
