@@ -69,7 +69,7 @@ class StandingWave:
         )
 
     def measure(self, harness: Harness) -> Oscillation:
-        """Fit a damped oscillation to the amplitude of a run."""
+        """Fit a damped oscillation to the amplitude of a run, by least squares."""
         times, amplitudes = self.amplitudes(harness)
         guess = (2.0 * np.pi / self.period, 0.0, self.amplitude, 0.0)
         (omega, gamma, _, _), _ = curve_fit(_damped, times, amplitudes, p0=guess)
@@ -101,7 +101,7 @@ class Column:
     cells: tuple[int, ...] = (8, 16, 32)
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Speed and damping at the finest resolution, and the order of convergence of the speed."""
+        """Compare the speed at the finest resolution and its order of convergence; show the damping."""
         waves = [StandingWave(cells) for cells in self.cells]
         exact = named("basalt").longitudinal_speed
         measured = [wave.measure(harness) for wave in waves]

@@ -23,7 +23,7 @@ ROWS = 40
 
 
 def as_it_is(scene: Scene) -> Arrays:
-    """No change of the initial state."""
+    """Change nothing in the initial state."""
     return {}
 
 

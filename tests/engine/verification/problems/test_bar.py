@@ -8,11 +8,10 @@ from engine.laws.fracture import Fracture
 from engine.scene.material import named
 from engine.scene.scene import Sphere
 from engine.verification.material_point import MaterialPoint
+from engine.verification.problems.bar import Bar, Pull
 from tests.helpers.device import Array, worst
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
 from tests.helpers.parameter_sets import rules_of
-
-pytestmark = pytest.mark.usefixtures("taichi")
 
 BODY = Sphere(radius=1.0, particles=200)
 STEPS = 600
@@ -67,6 +66,7 @@ def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     return np.array(stress), np.array(damage)
 
 
+@pytest.mark.usefixtures("taichi")
 @pytest.mark.parametrize("name", list(FRICTION))
 @pytest.mark.parametrize("rate", [0.1, 1.0, 100.0])
 def test_a_bar_breaks_as_an_independent_integration_says(name, rate):
@@ -79,3 +79,9 @@ def test_a_bar_breaks_as_an_independent_integration_says(name, rate):
     # round-off of 600 steps
     assert worst(stress, expected_stress, mean.max()) < 1e-12
     assert worst(damage, expected_damage, 1.0) < 1e-13
+
+
+@pytest.mark.parametrize("rate", Bar().rates)
+def test_bars_are_pulled_beyond_their_peak(rate):
+    stress = Pull(rate).reference()
+    assert stress.argmax() < 0.7 * len(stress)
