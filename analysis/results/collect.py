@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from analysis.campaign import NONE, Scalar, parameters, plain
 from analysis.remnant.outcome import Outcome, Outcomes, outcome
 from analysis.results.error_bars import combine
-from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS
+from analysis.results.variables import OUTCOMES, TEXTS, parameter
 from campaigns.campaign import KeptCampaign, read_campaign
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
-from engine.quantities import Quantity
 
 Column = NDArray[np.float64] | NDArray[np.object_]
 """Numbers or texts of all jobs, shape [job_count]."""
@@ -138,4 +137,4 @@ def _column(values: Sequence[Scalar]) -> Column:
 
 
 def _attributes(name: str) -> dict[str, str]:
-    return PARAMETERS.get(name, Quantity(name.replace("_", " "), "")).attributes()
+    return parameter(name).attributes()

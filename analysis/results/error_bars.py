@@ -25,7 +25,10 @@ _ERROR = (
     "sqrt(e^2 + d^2) with the standard error e of the mean over seeds and the difference d of the means at both "
     "resolutions; NaN if one is unknown"
 )
-_RESOLVED = "1 where the means at both resolutions differ by more than the 95 % confidence interval over seeds, else 0"
+_RESOLVED = (
+    "1 where the difference of the means at both resolutions exceeds the half-width of its 95 % confidence interval "
+    "over seeds, 0 where not; NaN if one is unknown"
+)
 
 
 def combine(members: xr.Dataset) -> xr.Dataset:
@@ -59,7 +62,11 @@ def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
         return {name: mean}
     error = ((mean - coarse.mean("seed")) ** 2 + standard_error(fine) ** 2) ** 0.5
     about = {"long_name": f"error of the {attributes['long_name']}", "units": attributes["units"], "comment": _ERROR}
-    flag = {"long_name": f"resolution changes the {attributes['long_name']}", "units": "1", "comment": _RESOLVED}
+    flag = {
+        "long_name": f"significant change with resolution of the {attributes['long_name']}",
+        "units": "1",
+        "comment": _RESOLVED,
+    }
     return {
         name: mean,
         f"{name}_error": error.assign_attrs(about),

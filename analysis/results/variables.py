@@ -122,20 +122,23 @@ TEXTS = {
 }
 """Texts of one job."""
 
-Variable = Quantity
-
 PARAMETERS = {
-    "velocity": Variable("relative speed at point-mass contact", "m s-1"),
-    "angle": Variable("impact angle", "degree", "0 is head-on"),
-    "end_time": Variable("simulated time after point-mass contact", "s"),
-    "radius": Variable("radius of the target", "m"),
-    "projectile_radius": Variable("radius of the projectile", "m"),
-    "particles": Variable("particles in the target", "1"),
-    "seed": Variable("seed of the particles and flaws", "1"),
-    "friction": Variable("friction coefficient of damaged rock", "1"),
-    "sound_speed": Variable("factor on the speed of sound", "1", "below 1 a late-stage approximation"),
-    "viscosity.shear": Variable("kinematic shear viscosity", "m2 s-1"),
-    "viscosity.bulk": Variable("kinematic bulk viscosity", "m2 s-1"),
-    "case": Variable("name of the case", ""),
+    "velocity": Quantity("relative speed at point-mass contact", "m s-1"),
+    "angle": Quantity("impact angle", "degree", "0 is head-on"),
+    "end_time": Quantity("simulated time after point-mass contact", "s"),
+    "radius": Quantity("radius of the target", "m"),
+    "projectile_radius": Quantity("radius of the projectile", "m"),
+    "particles": Quantity("particles in the target", "1"),
+    "seed": Quantity("seed of the particles and flaws", "1"),
+    "friction": Quantity("friction coefficient of damaged rock", "1"),
+    "sound_speed": Quantity("factor on the speed of sound", "1", "below 1 a late-stage approximation"),
+    "viscosity.shear": Quantity("kinematic shear viscosity", "m2 s-1"),
+    "viscosity.bulk": Quantity("kinematic bulk viscosity", "m2 s-1"),
+    "case": Quantity("name of the case", ""),
 }
 """Parameters of a study with a known unit; others keep their own name and no unit."""
+
+
+def parameter(key: str) -> Quantity:
+    """Return what a coordinate of results.nc is, from the dotted key of its parameter."""
+    return PARAMETERS.get(key, Quantity(key.replace("_", " "), ""))
