@@ -1,4 +1,4 @@
-"""What each variable of results.nc is: the one list of names, units and meanings (CF attributes)."""
+"""The variables of results.nc: names, units and meanings (CF attributes)."""
 
 from analysis.remnant.ellipsoid import THIN
 from analysis.remnant.fragments import LINKING_LENGTH
@@ -78,7 +78,7 @@ OUTCOMES = {
     "J_p05": Quantity("5th percentile of rho0/rho over the particles of the largest remnant", "1"),
     "J_p50": Quantity("median of rho0/rho over the particles of the largest remnant", "1"),
     "J_p95": Quantity("95th percentile of rho0/rho over the particles of the largest remnant", "1"),
-    "damaged_fraction": Quantity("mass share of the largest remnant with damage above 0.5", "1"),
+    "damaged_fraction": Quantity(f"mass fraction of the largest remnant with damage above {DAMAGED:g}", "1"),
     "time_after_contact": Quantity("time of the outcome after point-mass contact", "s"),
     "shape_change": Quantity(
         "largest relative change of b_over_a and c_over_a lately",
@@ -110,10 +110,10 @@ def described(numbers: dict[str, float]) -> dict[str, float]:
 
 
 WITHOUT_ERROR = ("largest_thin", "settled", "time_after_contact")
-"""Outcomes that are no measured numbers."""
+"""Outcomes that are flags or given, not measured: they have no error."""
 
 COSTS = ("steps", "wall_time", "cpu_time")
-"""Outcomes that add up over the runs of a cell."""
+"""Outcomes that add up over the members of a point."""
 
 _STATES = ", ".join(state for state in JobState if state != JobState.MISSING)
 
