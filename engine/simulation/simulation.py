@@ -161,7 +161,7 @@ class Simulation:
         bulk = np.array([material.eos.bulk_modulus() for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
         elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, rho0, self.next_dt)
-        return totals(state, self.scene.dx, elastic, self.gravity.energy(), work)
+        return totals(state, self.scene.dx, elastic, self.gravity.energy(state["x"], state["mass"]), work)
 
     def rho0(self, state: Arrays) -> NDArray[np.float64]:
         """Reference density of every particle [kg/m^3], shape [particle_count]."""
