@@ -71,7 +71,7 @@ class Hencky:
 
     @ti.func
     def stress(self, p, H, growth, J, P, E, D, body):
-        """Return 2 G dev(ln V) [Pa], scaled back to sqrt(J2) = Y where it exceeds Y, and store its strain.
+        """Return 2 G dev(ln V) [Pa], scaled back to sqrt(J2) = Y where it is beyond, and store its strain.
 
         Where Y = 0 the stored strain is zero.
         """

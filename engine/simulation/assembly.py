@@ -44,7 +44,7 @@ def gravity(scene: Scene, particles: Particles) -> Gravity:
     if physics.gravity:
         radius, opening = physics.gravity.softening * scene.spacing, physics.gravity.opening
         return BarnesHut(particles, radius, opening) if opening > 0.0 else DirectSum(particles, radius)
-    return UniformGravity(particles, physics.uniform_gravity) if physics.uniform_gravity else NoGravity()
+    return UniformGravity(physics.uniform_gravity) if physics.uniform_gravity else NoGravity()
 
 
 def walls(scene: Scene) -> Boundary:
