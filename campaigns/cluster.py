@@ -11,6 +11,7 @@ import dask
 from dask.distributed import Client, LocalCluster
 from dask.system import CPU_COUNT
 
+from campaigns.worker import Worker
 from engine.errors import SceneError
 
 CONNECTION_TIMEOUT = 10.0
@@ -21,10 +22,11 @@ CONNECTION_TIMEOUT = 10.0
 class Resources:
     """What a campaign may use.
 
-    workers: jobs at the same time.
-    threads: CPU threads of one job.
-    scheduler: address of a running dask scheduler; `None` starts a cluster of our own.
-    slurm: let that cluster submit its workers to SLURM.
+    Attributes:
+        workers: jobs at the same time.
+        threads: CPU threads of one job.
+        scheduler: address of a running dask scheduler; `None` starts a cluster of our own.
+        slurm: let that cluster submit its workers to SLURM.
     """
 
     workers: int
@@ -48,11 +50,18 @@ def share_cores(unfinished: int, workers: int | None, threads: int | None) -> tu
 
 @contextmanager
 def connect(resources: Resources) -> Iterator[Client]:
-    """A client of the cluster that `resources` names.
+    """A client of the cluster that `resources` names, whose workers can run engines.
 
     Raises:
         SceneError: the scheduler does not answer, or SLURM support is missing or not set up.
     """
+    with _client(resources) as client:
+        client.register_plugin(Worker())
+        yield client
+
+
+@contextmanager
+def _client(resources: Resources) -> Iterator[Client]:
     if resources.scheduler:
         with _client_of(resources.scheduler) as client:
             yield client

@@ -10,18 +10,16 @@ from engine.job.directory import JobState
 MEMBERS = ("resolution", "seed")
 """Dimensions of the members of one cell."""
 
-_NOT_DONE = tuple(
-    state.value
-    for state in (
-        JobState.CORRUPT,
-        JobState.FAILED,
-        JobState.RUNNING,
-        JobState.INTERRUPTED,
-        JobState.PENDING,
-        JobState.MISSING,
-    )
+_WORST_FIRST = (
+    JobState.CORRUPT,
+    JobState.FAILED,
+    JobState.RUNNING,
+    JobState.INTERRUPTED,
+    JobState.PENDING,
+    JobState.MISSING,
+    JobState.DONE,
 )
-"""States of a member that keep a cell from being done; the first is the cell's."""
+"""Of the states of its members, a point has the first in this order."""
 
 _ERROR = (
     "standard error over seeds and difference of the means of both resolutions, in quadrature; NaN if one is unknown"
@@ -71,12 +69,12 @@ def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
 def _states(members: xr.Dataset) -> dict[str, xr.DataArray]:
     """A cell is done when all its members are; else it is as its worst member, for that one's reason."""
     state, reason = members["state"], members["reason"]
-    found = xr.full_like(state.isel(resolution=0, seed=0, drop=True), "done")
-    for name in reversed(_NOT_DONE):
-        found = found.where(~(state == name).any(MEMBERS), name)
+    found = state.isel(resolution=0, seed=0, drop=True)
+    for one in reversed(_WORST_FIRST):
+        found = found.where(~(state == one).any(MEMBERS), one.value)
     told = reason.where(state == found, "")
     why = xr.apply_ufunc(_first, told, input_core_dims=[MEMBERS], vectorize=True, output_dtypes=[object])
-    done = (state == "done").sum(MEMBERS).assign_attrs(long_name="members that are done", units="1")
+    done = (state == JobState.DONE).sum(MEMBERS).assign_attrs(long_name="members that are done", units="1")
     return {"state": found.assign_attrs(state.attrs), "reason": why.assign_attrs(reason.attrs), "members": done}
 
 

@@ -34,5 +34,5 @@ class History:
 
 
 def _variable(name: str, values: list[NDArray[np.float64]]) -> xr.Variable:
-    stacked = np.stack(values)
-    return xr.Variable(("time", "space")[: stacked.ndim], stacked, HISTORY[name].attributes())
+    quantity = HISTORY[name]
+    return xr.Variable(quantity.dims("time"), np.stack(values), quantity.attributes())

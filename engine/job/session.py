@@ -190,7 +190,7 @@ class Run:
             largest_speed=float(np.linalg.norm(state["v"], axis=1).max()),
             largest_compression=float(1.0 / (1.0 + state["j"].min())),
             damaged_fraction=float(np.mean(state["damage_root"] ** 3)),
-            isolated=float(simulation.transfer.alone_count[None]),
+            isolated=float(simulation.stencil.ballistic_count[None]),
         )
 
     def _check(self, row: Row) -> None:

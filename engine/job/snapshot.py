@@ -37,4 +37,5 @@ def snapshot(state: Arrays, rho0: Any, attributes: dict[str, Any], dtype: type =
 
 
 def _variable(name: str, values: Any) -> xr.Variable:
-    return xr.Variable(("particle", "space")[: values.ndim], values, PARTICLES[name].attributes())
+    quantity = PARTICLES[name]
+    return xr.Variable(quantity.dims("particle"), values, quantity.attributes())

@@ -82,6 +82,11 @@ class Constitution:
         return self.wave_speed(c2, body), diffusivity
 
     @ti.func
+    def rho0(self, p):
+        """Return the density of the reference state [kg/m^3] of particle p."""
+        return self.table[self.particles.body[p]].rho0
+
+    @ti.func
     def signal_speed(self, p):
         """Speed of the fastest wave [m/s] in particle p as it is."""
         body, J = self.particles.body[p], 1.0 + self.particles.j[p]

@@ -17,7 +17,8 @@ from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
-from engine.mpm.walls import Walls
+from engine.mpm.interfaces import Boundary
+from engine.mpm.walls import NoWalls, Walls
 from engine.scene.scene import Scene
 from engine.scene.tillotson import TillotsonParameters
 from engine.simulation.initial_conditions import all_flaws
@@ -47,9 +48,9 @@ def gravity(scene: Scene, particles: Particles) -> Gravity:
     return UniformGravity(particles, physics.uniform_gravity) if physics.uniform_gravity else NoGravity()
 
 
-def walls(scene: Scene) -> Walls | None:
+def walls(scene: Scene) -> Boundary:
     """Rigid planes."""
-    return Walls(scene.physics.walls) if scene.physics.walls else None
+    return Walls(scene.physics.walls) if scene.physics.walls else NoWalls()
 
 
 def _equation_of_state(scene: Scene) -> EquationOfStateLaw:

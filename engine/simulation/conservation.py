@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.mpm.apic import affine_inertia
 from engine.state.particles import Arrays
 
 Vector = NDArray[np.float64]
@@ -55,7 +56,7 @@ def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: floa
         gravitational_energy, half_step_work: [J].
     """
     m, x, v, C, E = (state[name] for name in ("mass", "x", "v", "C", "E"))
-    inertia = 0.25 * dx**2  # second moment of the quadratic spline, per mass
+    inertia = affine_inertia(dx)
     skew = np.stack([C[:, 2, 1] - C[:, 1, 2], C[:, 0, 2] - C[:, 2, 0], C[:, 1, 0] - C[:, 0, 1]], axis=1)
     return Totals(
         mass=float(np.sum(m)),

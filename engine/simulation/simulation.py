@@ -10,10 +10,11 @@ from engine.constants import BLOCK_EDGE
 from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity.self_gravity import SelfGravity
+from engine.mpm.apic import Apic
 from engine.mpm.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
-from engine.mpm.transfer import LARGEST_INCREMENT, Transfer
-from engine.scene.bodies import Body
-from engine.scene.material import Material
+from engine.mpm.stencil import Stencil
+from engine.mpm.time_step import first_rate
+from engine.mpm.transfer import Transfer
 from engine.scene.scene import Scene
 from engine.simulation import assembly
 from engine.simulation.conservation import Totals, elastic_energy, half_step_work, totals
@@ -64,7 +65,7 @@ class Simulation:
         """Put all particles where the scene has them; `changes` replace whole fields of their state."""
         self.particles.write({**initial_state(self.scene), **changes})
         self.rebuild_blocks()
-        self.clock.rate[None] = self._first_rate(self.particles.read("C", "tau", "body"))
+        self.clock.rate[None] = first_rate(self.scene, self.particles.read("C", "tau", "body"))
 
     def advance(self, until: float, steps: int = LAUNCHES) -> None:
         """Take at most some `steps`, none of them after the first that reaches `until` [s].
@@ -97,16 +98,16 @@ class Simulation:
     def use_stored_blocks(self) -> None:
         """Build the blocks from where the particles were when blocks were last built."""
         blocks = build_blocks(self.particles.read("origin")["origin"], self.scene.period_blocks)
-        if len(blocks.origin) > self.transfer.capacity:
+        if len(blocks.origin) > self.stencil.capacity:
             self._make_room(2 * len(blocks.origin))
         self.particles.sort(blocks.order)
-        self.transfer.use(blocks)
+        self.stencil.set_blocks(blocks)
         self.clock.moved_out[None] = 0
 
     def _make_room(self, blocks: int) -> None:
-        dx, cfl = self.scene.dx, self.scene.numerics.cfl
-        parts = (self.particles, self.constitution, self.gravity, self.clock, self.walls)
-        self.transfer = Transfer(*parts, dx, cfl, blocks)
+        self.stencil = Stencil(self.particles, self.scene.dx, blocks)
+        scheme = Apic(self.particles, self.constitution, self.gravity, self.walls, self.clock)
+        self.transfer = Transfer(self.stencil, scheme, self.walls, self.clock, self.scene.numerics.cfl)
 
     def _handle_events(self) -> None:
         if self.clock.moved_out[None]:
@@ -138,7 +139,7 @@ class Simulation:
     @property
     def first_dt(self) -> float:
         """The time step [s] that the scene begins with."""
-        return float(1.0 / max(self._first_rate(initial_state(self.scene)), self.clock.least_rate[None]))
+        return float(1.0 / max(first_rate(self.scene, initial_state(self.scene)), self.clock.least_rate[None]))
 
     def _check_fault(self) -> None:
         if self.clock.fault[None] != FAULT_NONE:
@@ -153,19 +154,6 @@ class Simulation:
             distance, advice = float(np.abs(x[p]).max()), "end the run earlier, or make cells larger"
             raise stop("coordinate [m]", distance, f"below {largest:.3g}", self.time, p, advice=advice)
 
-    def _first_rate(self, state: Arrays) -> float:
-        """Inverse time step [1/s] that bodies at rest density and full speed demand, in a state to begin with."""
-        scene = self.scene
-        speeds = [_fastest(body, material) for body, material in zip(scene.bodies, scene.materials, strict=True)]
-        return max(max(speeds) / (scene.numerics.cfl * scene.dx), self._rate_of_state(state))
-
-    def _rate_of_state(self, state: Arrays) -> float:
-        """Inverse time step [1/s] that motion and stress inside particles demand (engine/mpm/transfer.py)."""
-        stress = np.sqrt(np.sum(state["tau"] ** 2 * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0], axis=1))
-        release = 4.0 * float((stress / self.rho0(state)).max()) / self.scene.dx**2
-        strain = float(np.linalg.norm(state["C"], axis=(1, 2)).max())
-        return max(strain / LARGEST_INCREMENT, math.sqrt(release / LARGEST_INCREMENT))
-
     def totals(self) -> Totals:
         """What the run must conserve, now."""
         state = self.particles.read("x", "v", "C", "E", "mass", "j", "tau", "body", "acceleration")
@@ -178,9 +166,3 @@ class Simulation:
     def rho0(self, state: Arrays) -> NDArray[np.float64]:
         """Reference density of every particle [kg/m^3], shape [particle_count]."""
         return np.array([body.material.rho0 for body in self.scene.bodies])[state["body"]]
-
-
-def _fastest(body: Body, material: Material) -> float:
-    """Highest signal speed [m/s] in an unstressed body."""
-    rotation = float(np.linalg.norm(body.spin)) * body.reach
-    return material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + rotation

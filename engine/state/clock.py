@@ -51,6 +51,11 @@ class Clock:
         ti.atomic_max(self.rate[None], rate)
 
     @ti.func
+    def report_moved_out(self):
+        """Pause before the next step, for new blocks."""
+        self.moved_out[None] = 1
+
+    @ti.func
     def report_fault(self, fault, p):
         """Stop the run because of particle p; the lowest index is kept."""
         self.fault[None] = fault

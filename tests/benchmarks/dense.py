@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from engine.device.backend import mat3, vec3, vec4
 from engine.device.tensors import unpack
+from engine.mpm.apic import affine_velocity
 from engine.mpm.spline import spline_weights
-from engine.mpm.transfer import affine_velocity
 from engine.state.particles import Particles
 
 MARGIN = 2

@@ -27,19 +27,19 @@ FLUID = Physics(shear=False, strength=False, fracture=None, gravity=None)
 
 
 def broken(scene: Scene) -> Scene:
-    """The scene with bodies of rubble."""
+    """Return the scene with bodies of rubble."""
     bodies = tuple(body.model_copy(update={"damage": 1.0}) for body in scene.bodies)
     return altered(scene.model_copy(update={"bodies": bodies}), "physics.fracture", None)
 
 
 def pair(velocity: tuple[float, float, float]) -> Scene:
-    """Two bodies of one particle; the second moves [m/s]."""
+    """Return a scene of two bodies of one particle, of which the second moves [m/s]."""
     one = Sphere(radius=50e3, particles=1, hydrostatic=False)
     return with_rows(Scene(bodies=(one, one.model_copy(update={"velocity": velocity})), end_time=500.0, physics=LOOSE))
 
 
 def _time_steps() -> list[Case]:
-    """Whatever Courant number a scene accepts must run; 5 is ten times the default."""
+    """Every Courant number that a scene accepts must run; 5 is ten times the default."""
     numbers = (0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 5.0)
     return [
         Case("Courant number", f"{cfl:g}", with_courant_number(impact(), cfl), physical=cfl <= 1.0) for cfl in numbers
@@ -49,12 +49,12 @@ def _time_steps() -> list[Case]:
 def _materials() -> list[Case]:
     factors = (1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3)
     moduli = [
-        Case("moduli", f"x {factor:g}", with_materials(impact(share=0.5), stiffened(factor), stiffened(factor)))
+        Case("moduli", f"x {factor:g}", with_materials(impact(fraction=0.5), stiffened(factor), stiffened(factor)))
         for factor in factors
     ]
     pairs = ((1.0, 1e-4), (1e-4, 1.0), (100.0, 0.01))
     contrasts = [
-        Case("contrast", f"{a:g} on {b:g}", with_materials(impact(share=0.5), stiffened(b), stiffened(a)))
+        Case("contrast", f"{a:g} on {b:g}", with_materials(impact(fraction=0.5), stiffened(b), stiffened(a)))
         for a, b in pairs
     ]
     frictions = [Case("friction", f"{mu:g}", broken(impact(friction=mu))) for mu in (0.0, 2.0, 100.0)]
@@ -69,7 +69,9 @@ def _impacts() -> list[Case]:
     finer = [Case("speed", f"20000 m/s, 2 x 300, seed {seed}", impact(**fine, seed=seed)) for seed in (2, 3)]
     angles = [Case("angle", f"{angle:g} deg", impact(angle=angle)) for angle in (0.0, 45.0, 80.0, 89.9)]
     small = {"particles": 1000, "projectile_radius": 5e3}
-    ratios = [Case("mass ratio", f"1:1000 at {v:g} m/s", impact(velocity=v, share=0.1, **small)) for v in (200.0, 5e3)]
+    ratios = [
+        Case("mass ratio", f"1:1000 at {v:g} m/s", impact(velocity=v, fraction=0.1, **small)) for v in (200.0, 5e3)
+    ]
     ratios.append(Case("mass ratio", "1:8", impact(projectile_radius=25e3)))
     sizes = [
         Case("radius", "100 m", impact(radius=100.0)),
@@ -122,17 +124,17 @@ def _states() -> list[Case]:
 def _few_and_odd() -> list[Case]:
     counts = [Case("particles", f"2 x {n}", impact(particles=n)) for n in (1, 2, 10)]
     counts += [Case("particles", str(n), alone(particles=n, hydrostatic=True)) for n in (1, 2, 10)]
-    places = [
-        Case("place", "all in one point", alone(), states.coincident(1), physical=False),
-        Case("place", "all in two points", alone(), states.coincident(2), physical=False),
-        Case("place", "two in one point", alone(particles=2), states.coincident(1), physical=False),
-        Case("place", "a node of weight 1e-15", pair((0.0, 0.0, 0.0)), states.barely_touching),
-        Case("place", "1e8 m away", impact(share=0.2), states.distant(1e8)),
-        Case("place", "leaves the grid's range", pair((2e4, 0.0, 0.0)), states.near_the_edge, physical=False),
+    positions = [
+        Case("position", "all in one point", alone(), states.coincident(1), physical=False),
+        Case("position", "all in two points", alone(), states.coincident(2), physical=False),
+        Case("position", "two in one point", alone(particles=2), states.coincident(1), physical=False),
+        Case("position", "a node of weight 1e-15", pair((0.0, 0.0, 0.0)), states.barely_touching),
+        Case("position", "1e8 m away", impact(fraction=0.2), states.distant(1e8)),
+        Case("position", "leaves the grid's range", pair((2e4, 0.0, 0.0)), states.near_the_edge, physical=False),
     ]
     return [
         *counts,
-        *places,
+        *positions,
         Case("parts", "damage 1 everywhere", broken(impact())),
         Case("parts", "without energy", impact().model_copy(update={"physics": Physics(energy=False)})),
         Case("parts", "fluid", impact().model_copy(update={"physics": FLUID})),
@@ -164,16 +166,16 @@ def _single_precision() -> list[Case]:
         Case("f32", "200 m/s", impact()),
         Case("f32", "20000 m/s", impact(velocity=2e4)),
         Case("f32", "radius 100 m", impact(radius=100.0)),
-        Case("f32", "moduli x 1000", with_materials(impact(share=0.5), stiffened(1e3), stiffened(1e3))),
+        Case("f32", "moduli x 1000", with_materials(impact(fraction=0.5), stiffened(1e3), stiffened(1e3))),
         Case("f32", "at rest", alone(hydrostatic=True)),
         Case("f32", "E = 1e+08 J/kg", hot, uniform(E=1e8)),
-        Case("f32", "1e8 m away", impact(share=0.2), states.distant(1e8)),
+        Case("f32", "1e8 m away", impact(fraction=0.2), states.distant(1e8)),
         Case("f32", "Courant number 5", with_courant_number(impact(), 5.0), physical=False),
     ]
     return [replace(case, scene=in_single_precision(case.scene)) for case in cases]
 
 
 def all_cases() -> list[Case]:
-    """Every case, group by group."""
+    """Return every case, group by group."""
     groups = (_time_steps, _materials, _impacts, _states, _few_and_odd, _flows, _single_precision)
     return [case for group in groups for case in group()]

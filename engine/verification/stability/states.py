@@ -1,4 +1,4 @@
-"""Initial states that no scene of bodies at rest density would have."""
+"""Initial states that no scene has by itself: strained, expanding, hot, coincident."""
 
 import numpy as np
 
@@ -11,15 +11,15 @@ from engine.verification.stability.case import Changes
 
 
 def strained(eta: float, damage: float = 0.0) -> Changes:
-    """Condensed rock at rho/rho0 = eta and at rest, with its stress and the energy of it, below evaporation."""
+    """Condensed rock at rest at rho/rho0 = eta, with its stress and cold energy, at most that of evaporation."""
 
     def changes(scene: Scene) -> Arrays:
         material = scene.materials[0]
-        held = 1.0 if eta > 1.0 else 1.0 - damage
-        energy = held * min(material.eos.cold_energy(material.rho0, eta), 0.99 * material.eos.vaporisation_energy())
-        tau = -held * material.eos.pressure(material.rho0, eta - 1.0, energy) / eta
+        intact = 1.0 if eta > 1.0 else 1.0 - damage
+        energy = intact * min(material.eos.cold_energy(material.rho0, eta), 0.99 * material.eos.vaporisation_energy())
+        tau = -intact * material.eos.pressure(material.rho0, eta - 1.0, energy) / eta
         return {
-            # particles where such density puts them
+            # spacing at that density
             "x": initial_state(scene)["x"] * eta ** (-1.0 / 3.0),
             "j": np.full(scene.particles, 1.0 / eta - 1.0),
             "E": np.full(scene.particles, energy),
@@ -39,12 +39,12 @@ def expanding(rate: float) -> Changes:
     return changes
 
 
-def coincident(places: int) -> Changes:
-    """All particles of all bodies in a few places."""
+def coincident(points: int) -> Changes:
+    """All particles of all bodies at a few points."""
 
     def changes(scene: Scene) -> Arrays:
         x = initial_state(scene)["x"]
-        return {"x": x[np.arange(len(x)) % places]}
+        return {"x": x[np.arange(len(x)) % points]}
 
     return changes
 

@@ -16,8 +16,8 @@ from analysis.accuracy.figure import error_against_cost, errors
 from analysis.accuracy.measure import accuracy
 from analysis.accuracy.orders import observed_order
 from analysis.accuracy.report import markdown
-from analysis.campaign import read_campaign
 from analysis.results.variables import OUTCOMES
+from campaigns.campaign import KeptCampaign, read_campaign
 from campaigns.expansion import expand
 from campaigns.study import find_study, read_study
 from engine.errors import SceneError
@@ -111,11 +111,11 @@ def test_runs_that_are_not_done_do_not_count() -> None:
     assert "1 cases of the study have no finished run" in markdown(found, 5)
 
 
-def test_the_shipped_study_turns_one_setting_a_case_but_for_fine_gravity(tmp_path: Path) -> None:
+def test_the_shipped_study_varies_one_setting_a_case_but_for_fine_gravity(tmp_path: Path) -> None:
     write_json(tmp_path / "campaign.json", expand(read_study(find_study("accuracy")), "accuracy").content())
-    found = cases(read_campaign(tmp_path))
-    assert found["base"].knob == "none"
-    assert [name for name, case in found.items() if case.knob == "several"] == ["particles5000-fine-gravity"]
+    found = cases(read_campaign(tmp_path, KeptCampaign))
+    assert found["base"].setting == "none"
+    assert [name for name, case in found.items() if case.setting == "several"] == ["particles5000-fine-gravity"]
     assert found["viscosity.shear350000"] == Case("viscosity.shear", 3.5e5, 1000)
     assert found["particles20000"].particles == 20000
 
@@ -138,7 +138,7 @@ def test_the_command_writes_data_figure_and_tables(tmp_path: Path) -> None:
     assert told.exit_code == 0, told.output
     assert (tmp_path / "accuracy.md").read_text() in told.output and "| viscous | 2 |" in told.output
     found = read_dataset(tmp_path / "accuracy.nc")
-    assert found["knob"].values.tolist() == ["none", "particles", "viscosity.shear"]
+    assert found["setting"].values.tolist() == ["none", "particles", "viscosity.shear"]
     assert all(found[name].attrs["units"] for name in found.data_vars)
     assert matplotlib.image.imread(tmp_path / "accuracy.png").shape[0] > 500
 
@@ -172,4 +172,4 @@ def test_another_campaign_is_refused(tmp_path: Path, coords: dict[str, list[obje
         tmp_path, coords, [({key: values[0] for key, values in coords.items()}, Collision(velocity=1, angle=5))]
     )
     with pytest.raises(SceneError, match=told):
-        cases(read_campaign(tmp_path))
+        cases(read_campaign(tmp_path, KeptCampaign))

@@ -9,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from analysis.__main__ import app, main
+from analysis.remnant.fragments import friends_of_friends
 from analysis.report.products import plots
 from analysis.results.collect import collect
 from analysis.results.tables import printed, reasons, series, shape_table
@@ -48,6 +49,19 @@ def test_every_layout_has_its_table_and_figures(tmp_path: Path, layout: str) -> 
     table = pd.read_csv(tmp_path / "shape_table.csv")
     assert len(table) == len(cells) and table["b_over_a"].notna().sum() == done
     assert len(printed(shape_table(results)).splitlines()) == len(cells) + 1
+
+
+def test_clumps_of_a_state_are_sought_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    counts: list[int] = []
+
+    def counted(position: np.ndarray, *arguments: Any) -> np.ndarray:
+        counts.append(len(position))
+        return friends_of_friends(position, *arguments)
+
+    monkeypatch.setattr("analysis.remnant.fragments.friends_of_friends", counted)
+    coords, done = LAYOUTS["grid"]
+    plots(campaign(tmp_path, coords, grid(coords), done))
+    assert len(counts) == done
 
 
 def test_cases_have_a_row_each_and_figures(tmp_path: Path) -> None:

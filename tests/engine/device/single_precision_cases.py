@@ -10,7 +10,7 @@ from engine.errors import GuardFault
 from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
 from engine.job.snapshot import FIELDS, snapshot
-from engine.mpm.transfer import affine_velocity
+from engine.mpm.apic import affine_velocity
 from engine.scene.placement import sphere_points
 from engine.simulation.conservation import as_row
 from engine.simulation.guard import Guard

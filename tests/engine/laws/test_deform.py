@@ -6,8 +6,8 @@ from scipy.spatial.transform import Rotation
 from engine.device.backend import mat3
 from engine.device.tensors import determinant_increment, deviator, half_log, unpack
 from engine.laws.shear import deform
+from engine.verification.material_point import unpacked
 from tests.helpers.device import Array, compose, norm, rotations, traceless, worst
-from tests.helpers.material_point import unpacked
 from tests.helpers.oracle import log_strain
 
 pytestmark = pytest.mark.usefixtures("taichi")

@@ -23,12 +23,12 @@ def final_state(scene: Scene) -> tuple[Arrays, int]:
     simulation.start()
     while not simulation.finished:
         simulation.advance(scene.end_time)
-    return simulation.particles.read(), simulation.transfer.capacity
+    return simulation.particles.read(), simulation.stencil.capacity
 
 
 def test_room_for_blocks_grows_without_a_trace_in_the_results(monkeypatch: pytest.MonkeyPatch) -> None:
     ample, _ = final_state(scattering())
-    monkeypatch.setattr("engine.mpm.transfer.capacity", lambda count: 4 if count == 25 else count)
+    monkeypatch.setattr("engine.mpm.stencil.capacity", lambda count: 4 if count == 25 else count)
     grown, room = final_state(scattering())
     assert room > 4
     for name, values in ample.items():

@@ -5,10 +5,10 @@ import pytest
 
 from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture
-from engine.scene.material import PARAMETER_SETS
+from engine.scene.material import PARAMETER_SETS, Material
 from engine.scene.scene import Sphere
+from engine.verification.material_point import MaterialPoint
 from tests.helpers.device import Array, worst
-from tests.helpers.material_point import Points
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -27,7 +27,8 @@ def drawn(name: str) -> Flaws:
 def engine_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     """Axial stress [Pa] and damage of every particle, shape [STEPS, particles]."""
     fracture = Fracture([BODY], PARAMETER_SETS[name].fracture, drawn(name))
-    points = Points(BODY.particles, strength=True, fracture=fracture, friction=FRICTION[name])
+    material = Material(damaged_friction=FRICTION[name])
+    points = MaterialPoint(BODY.particles, material, strength=True, fracture=fracture)
     stress, damage = [], []
     for _ in range(STEPS):
         points.step(np.diag([rate, 0.0, 0.0]), dt)
@@ -39,7 +40,7 @@ def engine_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
 def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     """The same with principal log strains, which add up as all increments are along one axis."""
     flaws, count = drawn(name), BODY.particles
-    own = [flaws.strain[begin:end] for begin, end in zip(flaws.first[:-1], flaws.first[1:], strict=True)]
+    own = [flaws.strain[first:last] for first, last in zip(flaws.first[:-1], flaws.first[1:], strict=True)]
     total = np.array([len(strains) for strains in own])
     growth = CRACK_SPEED[name] * np.sqrt(LONGITUDINAL / RHO0) / (3.0 * (4.0 / 3.0 * np.pi / count) ** (1.0 / 3.0))
     e, E, root, axial = np.zeros((count, 3)), np.zeros(count), np.zeros(count), np.zeros(count)
