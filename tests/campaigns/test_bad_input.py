@@ -28,6 +28,31 @@ BAD_STUDIES = {
         HEAD + "[axes]\nvelocity = [1]\nangle = [5]\ncfl = [0.1]\n",
         ["unknown key 'axes.cfl'", "did you mean 'numerics.cfl'"],
     ),
+    "old setting": (HEAD + "[collision]\nradius = 1e4\n" + GRID, ["collision: 'radius' is now 'target.radius'"]),
+    "old axis": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nmaterial.damaged_friction = [0.5]\n",
+        ["'axes.material.damaged_friction' is now 'axes.materials.basalt.friction'"],
+    ),
+    "old key of a case": (
+        HEAD + GRID + "[[cases]]\nprojectile_radius = 1e4\n",
+        ["case 1: 'projectile_radius' is now 'projectile.radius'"],
+    ),
+    "material that lacks constants": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nprojectile.material = ['basalt', 'ice']\n",
+        ["'materials.ice' lacks cohesion", "which strength needs: give them"],
+    ),
+    "misspelt material": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\ntarget.material = ['basalt', 'icee']\n",
+        ["'target.material': unknown material 'icee'", "did you mean 'ice'"],
+    ),
+    "materials as axis": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nmaterials.basalt.eos = [1]\n",
+        ["'axes.materials.basalt.eos' is a table", "materials.basalt.eos.A"],
+    ),
+    "misspelt constant as axis": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nmaterials.basalt.frictoin = [1]\n",
+        ["unknown key 'axes.materials.basalt.frictoin'", "did you mean 'materials.NAME.friction'"],
+    ),
     "switch as velocity": (HEAD + "[axes]\nvelocity = [true]\nangle = [5]\n", ["'velocity'", "not true or false"]),
     "negative radius": (
         HEAD + "[collision]\ntarget.radius = -5.0\n" + GRID,

@@ -77,6 +77,42 @@ def test_axes_can_be_nested_tables():
     assert nested.jobs == grid(**{"velocity": [1], "angle": [5], "viscosity.shear": [1e3]}).jobs
 
 
+def test_materials_spins_and_their_constants_are_axes():
+    ice = {"cohesion": 1e6, "intact_friction": 1.0, "melt_energy": 7e5, "friction": 0.6}
+    axes = {
+        "velocity": [100],
+        "angle": [5],
+        "projectile.material": ["basalt", "ice"],
+        "target.spin_period": [False, 4, 8],
+        "materials.basalt.friction": [0.5, 0.7],
+    }
+    study = Study(name="n", collision={"materials": {"ice": ice}}, axes=axes)
+    campaign = expand(study, "test")
+    assert campaign.dims == (
+        "velocity",
+        "angle",
+        "materials.basalt.friction",
+        "projectile.material",
+        "target.spin_period",
+    )
+    assert campaign.coords["target.spin_period"] == (None, 4.0, 8.0)
+    assert len({job.id for job in campaign.jobs}) == 12
+    last = campaign.jobs[-1]
+    assert last.id.startswith("v0100_a05_materials.basalt.friction0.7_projectile.material-i")
+    target, projectile = last.collision.scene().bodies
+    assert (target.material.friction, projectile.material.friction) == (0.7, 0.6)
+    assert target.spin[2] == pytest.approx(2.0 * 3.141592653589793 / (8.0 * 3600.0), rel=1e-9)
+    assert validate(Campaign, campaign.content(), "test") == campaign
+
+
+def test_a_constant_that_an_axis_gives_needs_no_shared_value():
+    ice = {"cohesion": 1e6, "intact_friction": 1.0, "melt_energy": 7e5}
+    shared = {"target": {"material": "ice"}, "materials": {"ice": ice}}
+    axes = {"velocity": [100], "angle": [5], "materials.ice.friction": [0.5, 0.6]}
+    jobs = expand(Study(name="n", collision=shared, axes=axes), "test").jobs
+    assert [job.collision.scene().bodies[1].material.friction for job in jobs] == [0.5, 0.6]
+
+
 def test_axes_and_cases_give_the_same_job():
     (from_axes,) = grid(velocity=[100], angle=[5], sound_speed=[0.5]).jobs
     (from_case,) = expand(

@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,6 +10,7 @@ from engine.errors import SceneError
 from engine.scene.collision import Collision
 from engine.scene.collision_bodies import Projectile
 from engine.scene.fields import validate
+from engine.scene.material import FractureRules, named
 from engine.scene.parameter_sets import PARAMETER_SETS
 from engine.scene.scene import Scene, Sphere
 from tests.helpers.parameter_sets import rules_of
@@ -20,6 +23,14 @@ SETTINGS = {
     "projectile": st.fixed_dictionaries({"radius": st.one_of(st.none(), st.floats(1e3, 6e4))}),
     "particles": st.integers(1, 4000),
 }
+
+
+ICE = {"cohesion": 1e6, "intact_friction": 1.0, "melt_energy": 7e5, "friction": 0.6}
+"""Guesses in place of what is not published."""
+
+
+def made(**settings: Any) -> Collision:
+    return Collision.model_validate({"velocity": 200.0, "angle": 15.0, "particles": 1000, **settings})
 
 
 def relative(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -111,6 +122,92 @@ def test_a_rule_of_fracture_leaves_the_others_of_the_set(name):
     assert Collision.model_validate_json(collision.canonical()) == collision
 
 
+def test_the_set_of_sugiura_2018_leaves_basalt_as_it_ships():
+    collision = Collision(velocity=200.0, angle=15.0)
+    assert collision.materials == {"basalt": named("basalt")}
+    assert collision.fracture == FractureRules()
+
+
+def test_the_set_of_the_talk_differs_in_friction_and_fracture_only():
+    s18, talk = (Collision(velocity=200.0, angle=15.0, parameter_set=name).scene() for name in ("sugiura2018", "talk"))
+    rules = FractureRules(flaws="2NlnN", strain="young", growth_speed=0.5, growth_range=3.0, per_flaw=False)
+    physics = s18.physics.model_copy(update={"fracture": rules})
+    rock = s18.bodies[0].material.model_copy(update={"friction": 0.945})
+    bodies = tuple(body.model_copy(update={"material": rock}) for body in s18.bodies)
+    assert talk == s18.model_copy(update={"physics": physics, "bodies": bodies})
+
+
+def test_each_body_has_its_own_material_and_the_projectile_is_like_the_target_unless_it_says():
+    tables = {"materials": {"ice": ICE}, "projectile": {"material": "ice"}}
+    target, projectile = made(**tables).scene().bodies
+    assert target.material == named("basalt") and projectile.material == named("ice", **ICE)
+    # the same spacing, not the same mass per particle
+    assert projectile.spacing == target.spacing
+    assert projectile.mass / target.mass == pytest.approx(917.0 / 2700.0, rel=1e-14)
+    both = made(target={"material": "ice", "radius": 1e4}, materials={"ice": ICE}).scene().bodies
+    assert {(body.material.name, body.radius) for body in both} == {("ice", 1e4)}
+
+
+def test_a_material_of_its_own_may_start_from_a_shipped_one():
+    rubble = {"name": "basalt", "rho0": 2000.0}
+    body = made(target={"material": "rubble"}, materials={"rubble": rubble}).scene().bodies[0]
+    assert body.material == named("basalt", rho0=2000.0)
+    own = {**named("ice", **ICE).model_dump(exclude={"name"}), "rho0": 800.0}
+    collision = made(target={"material": "firn"}, materials={"firn": own})
+    assert collision.scene().bodies[1].material.rho0 == 800.0
+    assert Collision.model_validate_json(collision.canonical()) == collision
+
+
+def test_what_a_material_lacks_is_asked_for_by_its_key():
+    with pytest.raises(SceneError, match=r"'materials\.ice' lacks cohesion, .*, which strength needs: give them"):
+        made(projectile={"material": "ice"}).scene()
+    unknown = {**ICE, "weibull_k": None}
+    with pytest.raises(SceneError, match=r"'materials\.ice' lacks weibull_k, which fracture needs: .*fracture = false"):
+        made(projectile={"material": "ice"}, materials={"ice": unknown}).scene()
+    assert made(projectile={"material": "ice"}, materials={"ice": unknown}, fracture=False).scene()
+
+
+def spin_momentum(body: Sphere) -> np.ndarray:
+    """Angular momentum of a body about its centre [kg m^2/s]."""
+    return 0.4 * body.mass * body.radius**2 * np.array(body.spin)
+
+
+@pytest.mark.parametrize(
+    ("obliquity", "axis"),
+    [
+        (0.0, (0.0, 0.0, 1.0)),
+        (90.0, (1.0, 0.0, 0.0)),
+        (180.0, (0.0, 0.0, -1.0)),
+        (60.0, (3**0.5 / 2.0, 0.0, 0.5)),
+    ],
+)
+def test_a_period_and_an_obliquity_make_a_spin(obliquity, axis):
+    scene = made(target={"spin_period": 4.0, "spin_obliquity": obliquity}).scene()
+    target, projectile = scene.bodies
+    rate = 2.0 * np.pi / (4.0 * 3600.0)
+    np.testing.assert_allclose(target.spin, rate * np.array(axis), rtol=1e-9, atol=1e-16)
+    assert projectile.spin == (0.0, 0.0, 0.0)
+    np.testing.assert_allclose(target.spin_momentum, spin_momentum(target), rtol=1e-14)
+
+
+def test_a_prograde_spin_adds_to_the_angular_momentum_of_the_impact_and_a_retrograde_one_takes_away():
+    spins = [{}, {"spin_period": 6.0}, {"spin_period": 6.0, "spin_obliquity": 180.0}]
+    momenta = []
+    for spin in spins:
+        bodies = made(projectile={"radius": 3e4, **spin}).scene().bodies
+        orbital = sum(body.mass * np.cross(body.position, body.velocity) for body in bodies)
+        momenta.append(orbital + sum(np.array(body.spin_momentum) for body in bodies))
+    still, prograde, retrograde = momenta
+    assert still[2] > 0.0 and not still[:2].any()
+    own = 0.4 * 2700.0 * 4.0 / 3.0 * np.pi * 3e4**5 * 2.0 * np.pi / (6.0 * 3600.0)
+    np.testing.assert_allclose(prograde - still, [0.0, 0.0, own], rtol=1e-9)
+    np.testing.assert_allclose(retrograde - still, [0.0, 0.0, -own], rtol=1e-9)
+
+
+def test_bodies_may_start_damaged():
+    assert [body.damage for body in made(target={"damage": 1.0}).scene().bodies] == [1.0, 0.0]
+
+
 def test_false_leaves_parts_out():
     parts = {"fracture": False, "gravity": False, "viscosity": False, "output": {"snapshot_interval": False}}
     collision = Collision.model_validate({"velocity": 200.0, "angle": 15.0, **parts})
@@ -136,6 +233,26 @@ def test_whole_numbers_and_floats_are_the_same_job_and_other_values_are_not():
     changes = {"velocity": 100.0000001, "angle": 15.5, "seed": 2, "particles": 19999, "parameter_set": "talk"}
     hashes = {Collision.model_validate({"velocity": 100, "angle": 15, key: v}).hash() for key, v in changes.items()}
     assert len(hashes | {one.hash()}) == len(changes) + 1
+
+
+OLD_KEYS = {
+    "radius": ({"radius": 1e4}, "'radius' is now 'target.radius'"),
+    "radius of the projectile": ({"projectile_radius": 1e4}, "'projectile_radius' is now 'projectile.radius'"),
+    "friction": ({"friction": 0.5}, "'friction' is now 'materials.basalt.friction'"),
+    "material": ({"material": {"rho0": 1.0}}, "'material' is now 'materials.basalt'"),
+    "damaged friction": (
+        {"materials": {"ice": {"damaged_friction": 0.5}}},
+        "'materials.ice.damaged_friction' is now 'materials.ice.friction'",
+    ),
+    "Tillotson": ({"materials": {"basalt": {"tillotson": {}}}}, "basalt.tillotson' is now 'materials.basalt.eos'"),
+}
+
+
+@pytest.mark.parametrize(("change", "told"), OLD_KEYS.values(), ids=OLD_KEYS)
+def test_an_old_key_is_refused_with_the_new_one_named(change, told):
+    with pytest.raises(SceneError) as error:
+        validate(Collision, {"velocity": 200.0, "angle": 15.0, **change}, "study.toml")
+    assert str(error.value).startswith("study.toml: ") and str(error.value).endswith(told)
 
 
 BAD = {
