@@ -6,7 +6,8 @@ from pathlib import Path
 import typer
 import xarray as xr
 
-from analysis.accuracy.report import report
+from analysis.accuracy.report import write_accuracy
+from analysis.remnant.fragments import clumps_of
 from analysis.remnant.outcome import latest, measure
 from analysis.report.products import plots as draw
 from analysis.results.collect import collect as collect_results
@@ -25,7 +26,7 @@ def plots(campaign: Path) -> None:
     typer.echo(printed(shape_table(results)))
     for line in [*unresolved(results), *reasons(results)]:
         typer.echo(line)
-    if not (results["state"] == "done").any():
+    if not (results["state"] == JobState.DONE).any():
         typer.echo("no job of this campaign is done yet: table and figures show states only")
     typer.echo("written: " + ", ".join(str(path) for path in written))
     _fail_on_damage(results)
@@ -44,7 +45,7 @@ def collect(campaign: Path) -> None:
 @app.command()
 def accuracy(campaign: Path) -> None:
     """Compare the cases of a campaign that turns one setting at a time: what each costs and changes."""
-    results, text, written = report(campaign)
+    results, text, written = write_accuracy(campaign)
     typer.echo(text)
     for line in reasons(results):
         typer.echo(line)
@@ -59,13 +60,13 @@ def remnant(job: Path) -> None:
     particles = latest(directory)
     if not directory.final.is_file():
         typer.echo(f"not done: last snapshot, {particles.time:g} s after contact")
-    for name, value in measure(directory, particles).items():
+    for name, value in measure(directory, particles, clumps_of(particles)).items():
         typer.echo(f"{name:24} {value:<14.6g} {OUTCOMES[name].units:7} {OUTCOMES[name].long_name}")
 
 
 def _fail_on_damage(results: xr.Dataset) -> None:
     """Exit with code 1 when a job is damaged, also one that says it is done."""
-    if (results["state"] == JobState.CORRUPT.value).any():
+    if (results["state"] == JobState.CORRUPT).any():
         raise typer.Exit(ExitCode.FAILED)
 
 

@@ -12,11 +12,9 @@ from rich.console import Console
 from campaigns.campaign import Campaign
 from campaigns.cluster import Resources, connect, share_cores
 from campaigns.directory import CampaignDirectory
-from campaigns.estimate import count_by_state
 from campaigns.expansion import expand
-from campaigns.job_state import TrackedJob, states
-from campaigns.plan import decide
-from campaigns.progress import display, show_once
+from campaigns.job_state import TrackedJob, decide, states
+from campaigns.progress import count_by_state, display, show_once
 from campaigns.runner import Run
 from campaigns.study import Study, find_study, read_study
 from engine.device.options import Arch

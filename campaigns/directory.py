@@ -3,15 +3,15 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from campaigns.campaign import Campaign, Job
+from campaigns.campaign import FILE, Campaign, Job, read_campaign
 from campaigns.dotted_keys import flatten
 from campaigns.expansion import scene_of
 from campaigns.job_names import HASH_LENGTH
 from engine.errors import SceneError
 from engine.job.storage import write_json, write_text
-from engine.scene.fields import read_table, validate
 
-_WAY_OUT = "choose another results directory with RUNS=DIR (--runs DIR)"
+_ELSEWHERE = "choose another results directory with RUNS=DIR (--runs DIR)"
+_ANEW = "delete this file and run the study again: it is written anew, and finished jobs are kept"
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class CampaignDirectory:
     @property
     def file(self) -> Path:
         """The campaign's description."""
-        return self.path / "campaign.json"
+        return self.path / FILE
 
     def read(self) -> Campaign:
         """The campaign kept here.
@@ -31,13 +31,12 @@ class CampaignDirectory:
         Raises:
             SceneError: campaign.json is missing or damaged.
         """
-        if not self.file.is_file():
-            raise SceneError(f"{self.path}: holds no campaign; start one with: make campaign STUDY=...")
         try:
-            return validate(Campaign, read_table(self.file), str(self.file))
+            return read_campaign(self.path, Campaign)
         except SceneError as error:
-            way_out = "delete this file and run the study again: it is written anew, and finished jobs are kept"
-            raise SceneError(f"{error}; {way_out}") from error
+            if not self.file.is_file():
+                raise
+            raise SceneError(f"{error}; {_ANEW}") from error
 
     def admit(self, campaign: Campaign) -> Campaign:
         """The campaign as it may be written here: jobs that have a directory keep its name.
@@ -73,25 +72,25 @@ class CampaignDirectory:
 
     def _require_same(self, kept: Campaign, given: Campaign) -> None:
         if kept.name != given.name:
-            raise SceneError(f"{self.path}: belongs to study '{kept.name}', not '{given.name}'; {_WAY_OUT}")
+            raise SceneError(f"{self.path}: belongs to study '{kept.name}', not '{given.name}'; {_ELSEWHERE}")
         if kept.physics_version != given.physics_version:
             raise SceneError(
                 f"{self.path}: computed with physics version {kept.physics_version}, this code has "
-                f"{given.physics_version}, and results must not mix; {_WAY_OUT}"
+                f"{given.physics_version}, and results must not mix; {_ELSEWHERE}"
             )
         self._require_same_settings(kept, given)
 
     def _require_same_settings(self, kept: Campaign, given: Campaign) -> None:
         before = kept.study.shared_settings(str(self.file))
         now = given.study.shared_settings("collision")
-        turned = flatten(kept.study.axes or {}) | flatten(given.study.axes or {})  # jobs differ in these by themselves
-        changed = [key for key in sorted(before | now) if before.get(key) != now.get(key) and key not in turned]
+        varied = flatten(kept.study.axes or {}) | flatten(given.study.axes or {})  # jobs differ in these by themselves
+        changed = [key for key in sorted(before | now) if before.get(key) != now.get(key) and key not in varied]
         if changed:
             details = ", ".join(f"{key} {before.get(key)} there and {now.get(key)} in the study" for key in changed)
-            raise SceneError(f"{self.path}: holds results with other settings ({details}); {_WAY_OUT}")
+            raise SceneError(f"{self.path}: holds results with other settings ({details}); {_ELSEWHERE}")
 
     def _require_empty(self) -> None:
         if not self.path.is_dir():
-            raise SceneError(f"{self.path}: is a file, not a results directory; {_WAY_OUT}")
+            raise SceneError(f"{self.path}: is a file, not a results directory; {_ELSEWHERE}")
         if any(not path.name.startswith(".") for path in self.path.iterdir()):
-            raise SceneError(f"{self.path}: holds files but no campaign.json, so it is not a campaign's; {_WAY_OUT}")
+            raise SceneError(f"{self.path}: holds files but no campaign.json, so it is not a campaign's; {_ELSEWHERE}")

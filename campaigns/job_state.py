@@ -1,4 +1,4 @@
-"""How each job stands, read from its directory; a damaged directory is a state like any other."""
+"""How each job stands, read from its directory, and what a run does with it; a damaged directory is a state as well."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,13 +29,13 @@ class TrackedJob:
 
 
 def states(directory: CampaignDirectory, campaign: Campaign) -> list[TrackedJob]:
-    """How all jobs of a campaign stand now."""
+    """Read how all jobs of a campaign stand now."""
     paths = [directory.path / job.directory for job in campaign.jobs]
     return [TrackedJob(path, status_of(path)) for path in paths]
 
 
 def status_of(job_directory: Path) -> Status:
-    """How one job stands now; `corrupt`, with the reason, when that cannot be told."""
+    """Read how one job stands now; it is `corrupt`, with the reason, when that cannot be told."""
     try:
         _require_own_scene(job_directory)
         return _sound_status(JobDirectory(job_directory))
@@ -56,3 +56,41 @@ def _sound_status(job: JobDirectory) -> Status:
     if status.state == JobState.DONE and not job.final.is_file():
         raise JobError(f"{job.final}: missing, though status.json says done")
     return status
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What a run does with a job.
+
+    Attributes:
+        runs: whether the job is run.
+        reason: why, in one line.
+    """
+
+    runs: bool
+    reason: str
+
+
+def decide(status: Status, retry_failed: bool) -> Decision:
+    """Decide what to do with a job in this state.
+
+    Args:
+        status: how the job stands.
+        retry_failed: run failed jobs once more.
+    """
+    note = f" ({status.reason})" if status.reason else ""
+    match JobState(status.state):
+        case JobState.PENDING:
+            return Decision(True, f"not started yet{note}")
+        case JobState.INTERRUPTED:
+            return Decision(True, f"interrupted at {status.progress:.0%}{note}: goes on from its last checkpoint")
+        case JobState.FAILED if retry_failed:
+            return Decision(True, f"failed, tried again: {status.reason}")
+        case JobState.FAILED:
+            return Decision(False, f"failed: {status.reason}; --retry-failed tries it again")
+        case JobState.DONE:
+            return Decision(False, "finished")
+        case JobState.RUNNING:
+            return Decision(False, f"being run by process {status.pid} on {status.host}")
+        case JobState.CORRUPT | JobState.MISSING:
+            return Decision(False, f"{status.reason}; delete the directory of this job to compute it anew")

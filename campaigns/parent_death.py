@@ -1,7 +1,8 @@
-"""`python -m campaigns.parent_death PARENT COMMAND...`: become COMMAND, stopped when PARENT ends, be it by kill -9.
+"""`python -m campaigns.parent_death PARENT COMMAND...`: run COMMAND, which is stopped when the process PARENT ends.
 
-Only Linux offers this; elsewhere the command outlives its parent, and the next run finds it still running.
-The kernel watches the thread that started this process, so that thread must wait for it.
+This holds for any end of PARENT, also by SIGKILL. Only Linux offers it; elsewhere COMMAND outlives PARENT, and the
+next run finds it still running. The signal is sent when the thread that started this process ends, so that thread
+must wait for it.
 """
 
 import ctypes
@@ -14,12 +15,12 @@ PR_SET_PDEATHSIG = 1
 
 
 def tethered(command: list[str]) -> list[str]:
-    """The command, tied to the life of this process."""
+    """The command line that runs `command` until it or this process ends."""
     return [sys.executable, "-m", "campaigns.parent_death", str(os.getpid()), *command]
 
 
 def become(parent: int, command: list[str]) -> None:
-    """Turn this process into `command`, which gets SIGTERM when `parent` ends."""
+    """Replace this process by `command`, which gets SIGTERM when the process `parent` ends."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
     if os.getppid() != parent:

@@ -1,4 +1,4 @@
-"""Running a campaign: hand unfinished jobs to the cluster, watch the disk, stop in order."""
+"""Running a campaign: submit unfinished jobs to the cluster, read from disk how they stand, stop in order."""
 
 import signal
 import sys
@@ -10,29 +10,30 @@ from dask.distributed import Client, Future
 
 from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
-from campaigns.job_state import TrackedJob, states
-from campaigns.plan import decide
+from campaigns.job_state import TrackedJob, decide, states
 from campaigns.progress import Show
 from campaigns.worker import Outcome, run_job, signal_jobs
 from engine.errors import ExitCode
+from engine.job.directory import JobState
 
 PERIOD = 1.0
-"""Time [s] between two looks at the disk."""
+"""Time [s] between two polls of the job directories."""
 STOP_PATIENCE = 30.0
-"""Time [s] engines get to write their checkpoint before they are killed."""
+"""Time [s] that engines have to write their checkpoint before they are killed."""
 IDLE_POLLS = 3
-"""Looks without any engine before all have ended: a worker may not know yet that its next job is cancelled."""
+"""Polls in a row without a running engine after which all count as ended; a cancelled job may begin after the first."""
 
 
 @dataclass
 class Run:
     """One attempt at every unfinished job of a campaign.
 
-    directory, campaign: what is run.
-    client: the cluster that runs it.
-    threads: CPU threads of one job.
-    arch: Taichi architecture.
-    retry_failed: run failed jobs once more.
+    Attributes:
+        directory, campaign: what is run.
+        client: of the cluster that runs it.
+        threads: CPU threads of one job.
+        arch: Taichi architecture.
+        retry_failed: run failed jobs once more.
     """
 
     directory: CampaignDirectory
@@ -45,7 +46,7 @@ class Run:
     _outcomes: dict[Path, Outcome] = field(default_factory=dict)
 
     def watch(self, show: Show) -> list[TrackedJob]:
-        """Run until no job is left to run and none is being run by another process; how they stand then.
+        """Run until no job is left to run and none is being run by another process, and return how they stand.
 
         A job is tried once; one that another process gives up is taken over.
 
@@ -56,7 +57,7 @@ class Run:
             while True:
                 jobs = self._poll()
                 show(jobs)
-                if not self._futures and not any(job.status.state == "running" for job in jobs):
+                if not self._futures and not any(job.status.state == JobState.RUNNING for job in jobs):
                     return jobs
                 time.sleep(PERIOD)
         except BaseException:
@@ -64,7 +65,7 @@ class Run:
             raise
 
     def _poll(self) -> list[TrackedJob]:
-        """Take in what ended, then read the disk, then hand out what is left."""
+        """Gather the tasks that ended, read how the jobs stand, and submit those that are left."""
         self._gather()
         jobs = states(self.directory, self.campaign)
         for job in jobs:
@@ -85,21 +86,21 @@ class Run:
                 self._outcomes[path] = outcome
 
     def _with_reason(self, job: TrackedJob) -> TrackedJob:
-        """The job with the reason its process gave, where the disk holds none."""
+        """The job with the reason that its process gave, where its status has none."""
         outcome = self._outcomes.get(job.directory)
-        if outcome is None or job.status.state in ("done", "running") or job.status.reason:
+        if outcome is None or job.status.state in (JobState.DONE, JobState.RUNNING) or job.status.reason:
             return job
         return replace(job, status=replace(job.status, reason=outcome.reason))
 
     def _stop(self) -> None:
-        """End the engines so that each can write its checkpoint, also those that workers begin meanwhile."""
+        """Stop the engines so that each writes its checkpoint, also those that begin meanwhile."""
         print("stopping: the jobs that run write their checkpoints", file=sys.stderr)
         paths = list(self._futures)
         self.client.cancel(list(self._futures.values()))
         deadline = time.monotonic() + STOP_PATIENCE
-        quiet = 0
-        while quiet < IDLE_POLLS:
-            quiet = 0 if any(self.client.run(signal_jobs, paths, signal.SIGTERM).values()) else quiet + 1
+        idle = 0
+        while idle < IDLE_POLLS:
+            idle = 0 if any(self.client.run(signal_jobs, paths, signal.SIGTERM).values()) else idle + 1
             time.sleep(0.2)
             if time.monotonic() > deadline:
                 self.client.run(signal_jobs, paths, signal.SIGKILL)

@@ -1,44 +1,97 @@
-"""One job on a worker: a subprocess that runs the engine, and its end in words."""
+"""The engines that one dask worker runs: a subprocess for each job, and its end in words."""
 
 import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Protocol
 
-from campaigns.job_state import status_of
+from dask.distributed import WorkerPlugin, get_worker
+
+from campaigns.job_state import decide, status_of
 from campaigns.parent_death import tethered
-from campaigns.plan import decide
 from engine.errors import ExitCode
 
 ENGINE = (sys.executable, "-m", "engine")
 """Command that runs one job directory."""
 _TAIL = 2000
-"""Bytes of error output that are searched for the last line."""
-
-_running: dict[Path, subprocess.Popen[bytes]] = {}
-_signalled: set[tuple[subprocess.Popen[bytes], int]] = set()
-"""Who got which signal: a second one might end an engine that writes its checkpoint after the first."""
+"""Bytes at the end of the error output in which the last line is sought."""
 
 
 @dataclass(frozen=True)
 class Outcome:
     """How a job ended on a worker.
 
-    code: exit code of the engine; negative for a signal.
-    reason: what went wrong, in one line; empty when nothing did.
+    Attributes:
+        code: exit code of the engine; negative for a signal.
+        reason: what went wrong, in one line; empty when nothing did.
     """
 
     code: int
     reason: str = ""
 
 
+class Worker(WorkerPlugin):  # type: ignore[misc]  # dask has no types
+    """The engines of one dask worker, for all campaigns that use it."""
+
+    name = "engines"
+    idempotent = True  # a second campaign must not replace the worker on which engines of the first run
+
+    def __init__(self) -> None:
+        self._running: dict[Path, subprocess.Popen[bytes]] = {}
+        self._signalled: set[tuple[subprocess.Popen[bytes], int]] = set()
+
+    def run(self, directory: Path, threads: int, arch: str, retry_failed: bool) -> Outcome:
+        """Run the engine on a job, unless nothing is left to do there; arguments as `run_job`."""
+        if not decide(status_of(directory), retry_failed).runs:
+            return Outcome(ExitCode.BUSY)
+        command = [*ENGINE, "run", str(directory), "--threads", str(threads), "--arch", arch]
+        with tempfile.TemporaryFile() as errors, self._started(directory, command, errors) as process:
+            code = process.wait()
+            return Outcome(code, _reason(code, errors))
+
+    def signal(self, directories: Collection[Path], number: int) -> int:
+        """Send a signal to the engines of these jobs, to each engine once, and return how many of them still run.
+
+        The same signal a second time might end an engine that writes its checkpoint after the first.
+        """
+        processes = [process for directory, process in list(self._running.items()) if directory in directories]
+        alive = [process for process in processes if process.poll() is None]
+        for process in alive:
+            if (process, number) not in self._signalled:
+                self._signalled.add((process, number))
+                process.send_signal(number)
+        return len(alive)
+
+    @contextmanager
+    def _started(self, directory: Path, command: list[str], errors: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
+        """The running command, in a process group of its own so that Ctrl-C reaches only the campaign."""
+        process = subprocess.Popen(
+            tethered(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, process_group=0
+        )
+        self._running[directory] = process
+        try:
+            yield process
+        finally:
+            del self._running[directory]
+
+
+class DaskWorker(Protocol):
+    """What is used of a dask worker.
+
+    Attributes:
+        plugins: by name.
+    """
+
+    plugins: dict[str, Worker]
+
+
 def run_job(directory: Path, threads: int, arch: str, retry_failed: bool) -> Outcome:
-    """Run the engine on a job, unless by now nothing is left to do there.
+    """Run the engine on a job; a task of the worker that executes it.
 
     Args:
         directory: the job directory.
@@ -46,36 +99,19 @@ def run_job(directory: Path, threads: int, arch: str, retry_failed: bool) -> Out
         arch: Taichi architecture, `cpu` or `cuda`.
         retry_failed: run the job although it failed before.
     """
-    if not decide(status_of(directory), retry_failed).runs:
-        return Outcome(ExitCode.BUSY)
-    command = [*ENGINE, "run", str(directory), "--threads", str(threads), "--arch", arch]
-    with tempfile.TemporaryFile() as errors, _started(directory, command, errors) as process:
-        code = process.wait()
-        return Outcome(code, _reason(code, errors))
+    worker: DaskWorker = get_worker()
+    return worker.plugins[Worker.name].run(directory, threads, arch, retry_failed)
 
 
-def signal_jobs(directories: list[Path], number: int) -> int:
-    """Send a signal, once, to each engine of these jobs on this worker; how many of them still run."""
-    processes = [process for directory, process in list(_running.items()) if directory in directories]
-    alive = [process for process in processes if process.poll() is None]
-    for process in alive:
-        if (process, number) not in _signalled:
-            _signalled.add((process, number))
-            process.send_signal(number)
-    return len(alive)
+def signal_jobs(directories: Collection[Path], number: int, dask_worker: DaskWorker) -> int:
+    """Send a signal, once, to the engines of these jobs on one worker, and return how many of them still run.
 
-
-@contextmanager
-def _started(directory: Path, command: list[str], errors: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
-    """The running command, in a process group of its own so that Ctrl-C reaches only the campaign."""
-    process = subprocess.Popen(
-        tethered(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, process_group=0
-    )
-    _running[directory] = process
-    try:
-        yield process
-    finally:
-        del _running[directory]
+    Args:
+        directories: the job directories.
+        number: of the signal.
+        dask_worker: the worker, given by dask under this name.
+    """
+    return dask_worker.plugins[Worker.name].signal(directories, number)
 
 
 def _reason(code: int, errors: IO[bytes]) -> str:

@@ -84,7 +84,7 @@ def explain(
 def verify(
     names: Annotated[list[str] | None, typer.Argument(help="Problems to run; all if none is named.")] = None,
     full: Annotated[bool, typer.Option("--full", help="Fine resolutions: minutes instead of seconds each.")] = False,
-    csv: Annotated[Path | None, typer.Option(help="File for the table, all digits.")] = None,
+    csv: Annotated[Path | None, typer.Option(help="File for all digits; rows of other problems in it stay.")] = None,
     figures: Annotated[Path | None, typer.Option(help="Directory for figures of the problems that have one.")] = None,
     threads: Threads = CORES,
     arch: Device = Arch.CPU,
@@ -96,7 +96,7 @@ def verify(
     choose("f64")
     from engine.verification.catalogue import FULL, SHORT
     from engine.verification.figures import draw
-    from engine.verification.report import frame, run_all, table
+    from engine.verification.results import run_all, table, write_table
 
     known = FULL if full else SHORT
     _require_known(names, known, "problem")
@@ -107,7 +107,7 @@ def verify(
             results.append(result)
             spinner.update(f"{len(results)} of {len(chosen)} done, {result.name} last")
             if csv:
-                frame(results).to_csv(csv, index=False)
+                write_table(csv, results, list(FULL))
         if figures:
             draw(chosen, figures)
     _print_table(table(results))
@@ -129,9 +129,9 @@ def accuracy(
     _require_known(names, TRADEOFFS, "scene")
     directory.mkdir(parents=True, exist_ok=True)
     for run in sweep(names or TRADEOFFS, directory / "scenes.nc", workers):
-        typer.echo(f"{run.scene:12} {run.knob:28} {run.value:>8}  error {run.error:9.3g}  {run.cpu_time:8.2f} s")
+        typer.echo(f"{run.scene:12} {run.setting:28} {run.value:>8}  error {run.error:9.3g}  {run.cpu_time:8.2f} s")
     runs = read(directory / "scenes.nc")
-    draw(runs, directory / "scenes.png")
+    draw(runs).savefig(directory / "scenes.png", dpi=80)
     typer.echo(orders(runs).to_string(index=False, float_format="%.2f"))
 
 

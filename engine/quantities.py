@@ -1,4 +1,4 @@
-"""Names, meanings and units of what a run writes: the one list for the history, the particles and their readers."""
+"""Names, meanings and units of what a run writes: the history, the particles, and which of it is conserved."""
 
 from typing import NamedTuple
 
@@ -22,6 +22,10 @@ class Quantity(NamedTuple):
         """As netCDF attributes, leaving out what is empty."""
         texts = {"long_name": self.long_name, "units": self.units, "comment": self.comment}
         return {key: text for key, text in texts.items() if text}
+
+    def dims(self, along: str) -> tuple[str, ...]:
+        """Dimensions of an array of values along `along`; the last one of a vector is `space`."""
+        return (along, "space") if self.is_vector else (along,)
 
 
 SPACE = ("x", "y", "z")
@@ -58,7 +62,7 @@ HISTORY = {
 """Variables of history.nc."""
 
 CONSERVED = ("mass", "momentum", "angular_momentum", "total_energy")
-"""Those that a closed system keeps; the total energy only where the scheme dissipates nothing."""
+"""Variables of `HISTORY` that a closed system conserves; the total energy only without numerical dissipation."""
 
 PARTICLES = {
     "position": Quantity("position", "m", is_vector=True),

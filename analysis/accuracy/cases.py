@@ -1,15 +1,19 @@
-"""Which setting each case of a campaign turns, against the case named base."""
+"""Which setting each case of a campaign varies, against the case named base."""
 
 from dataclasses import dataclass
 
-from analysis.campaign import NONE, Campaign, Scalar
+from analysis.campaign import NONE, Scalar, parameters
+from campaigns.campaign import KeptCampaign
 from engine.errors import SceneError
 
 BASE = "base"
 """Name of the case that all others are compared with."""
 
+RESOLUTION = (NONE, "particles")
+"""Settings of the cases that differ in resolution alone."""
+
 SEVERAL = "several"
-"""Knob of a case that differs from the base in more than one setting."""
+"""Setting of a case that differs from the base in more than one."""
 
 
 @dataclass(frozen=True)
@@ -17,18 +21,18 @@ class Case:
     """One case of a campaign.
 
     Attributes:
-        knob: dotted key of the one setting in which it differs from the base; `none` for the base, else `several`.
-        value: where it is turned to, `none` for the base.
-        particles: in the target.
+        setting: dotted key of the one setting in which it differs from the base; `none` for the base, else `several`.
+        value: of that setting, `none` for the base.
+        particles: number of particles of the target.
     """
 
-    knob: str
+    setting: str
     value: Scalar
     particles: int
 
 
-def cases(campaign: Campaign) -> dict[str, Case]:
-    """All cases by name.
+def cases(campaign: KeptCampaign) -> dict[str, Case]:
+    """Return all cases of a campaign by name.
 
     Raises:
         SceneError: the campaign has other dimensions than case and seed, or no case named base.
@@ -40,17 +44,17 @@ def cases(campaign: Campaign) -> dict[str, Case]:
         )
     if BASE not in campaign.coords["case"]:
         raise SceneError(f"campaign {campaign.name}: has no case '{BASE}'; give the one to compare with that name")
-    tables = {str(job.index["case"]): job.parameters for job in campaign.jobs}
+    tables = {str(job.index["case"]): parameters(job) for job in campaign.jobs}
     return {name: _case(table, tables[BASE]) for name, table in tables.items()}
 
 
 def _case(table: dict[str, Scalar], base: dict[str, Scalar]) -> Case:
     keys = [key for key in table | base if key != "seed" and _value(table, key) != _value(base, key)]
-    knob = keys[0] if len(keys) == 1 else SEVERAL if keys else NONE
-    return Case(knob, table.get(knob, NONE), int(table["particles"]))
+    setting = keys[0] if len(keys) == 1 else SEVERAL if keys else NONE
+    return Case(setting, table.get(setting, NONE), int(table["particles"]))
 
 
 def _value(table: dict[str, Scalar], key: str) -> Scalar:
-    """A setting; what is not set counts as 0, as no viscosity is a viscosity of 0."""
+    """Value of a setting; one that is not set counts as 0, as no viscosity is a viscosity of 0."""
     value = table.get(key, NONE)
     return 0.0 if value == NONE else value

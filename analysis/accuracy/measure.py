@@ -3,19 +3,13 @@
 import numpy as np
 import xarray as xr
 
-from analysis.accuracy.cases import BASE, Case
+from analysis.accuracy.cases import BASE, RESOLUTION, Case
 from analysis.accuracy.orders import orders
 from analysis.results.statistics import Difference, count, difference, interval, paired_difference, resolved
-from analysis.results.variables import OUTCOMES
+from analysis.results.variables import DRIFTS, OUTCOMES
 
 MEASURED = ("mass_ratio", "b_over_a", "c_over_a", "bulk_density")
 """Outcomes that are compared."""
-
-DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
-"""Outcomes that would be 0 without error."""
-
-RESOLUTION = ("none", "particles")
-"""Knobs of the cases that differ in resolution alone."""
 
 _INTERVAL = "half the width of the 95 % confidence interval, Student's t over seeds"
 _PAIRED = (
@@ -26,22 +20,22 @@ _RESOLVED = "1 where the difference exceeds its interval, 0 where not"
 
 
 def accuracy(results: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
-    """What every case with a finished run gives, how that differs from the base and the finest case, what it costs.
+    """Return outcomes and cost of every case with a finished run, and differences to the base and the finest case.
 
     Args:
         results: the results of a campaign, dimensions case and seed.
-        cases: the setting that each case turns.
+        cases: the setting that each case varies, by name of the case.
     """
     done = results.sel(case=(results["state"] == "done").any("seed").values)
     finest = _finest([str(name) for name in done["case"].values], cases)
-    found = _described(done, cases)
+    data = _described(done, cases)
     for name in MEASURED:
-        found = found.assign(_mean(done[name]))
+        data = data.assign(_mean(done[name]))
         for role, other in {"base": BASE, "finest": finest}.items():
-            found = found.assign(_change(done[name], found, other, role))
+            data = data.assign(_change(done[name], data, other, role))
     for name in (*DRIFTS, "cpu_time", "steps"):
-        found = found.assign(_mean(abs(done[name]).assign_attrs(done[name].attrs)))
-    return found.assign(orders(found, finest)).assign_attrs(finest=finest)
+        data = data.assign(_mean(abs(done[name]).assign_attrs(done[name].attrs)))
+    return data.assign(orders(data, finest)).assign_attrs(finest=finest)
 
 
 def _described(done: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
@@ -52,7 +46,7 @@ def _described(done: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
         {"runs": runs},
         coords={
             "case": ("case", [str(name) for name in done["case"].values], {"long_name": "name of the case"}),
-            "knob": ("case", [case.knob for case in chosen], {"long_name": "setting that differs from the base"}),
+            "setting": ("case", [case.setting for case in chosen], {"long_name": "setting that differs from the base"}),
             "value": ("case", [str(case.value) for case in chosen], {"long_name": "value of that setting"}),
             "particles": ("case", [case.particles for case in chosen], {"long_name": "particles a body", "units": "1"}),
             "spacing": ("case", spacing, {"long_name": "particle spacing in radii of the target", "units": "1"}),
@@ -62,13 +56,13 @@ def _described(done: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
 
 
 def _origin(done: xr.Dataset) -> dict[str, object]:
-    """What all runs share: the attributes of the campaign, and parameters of which all have one value."""
+    """Attributes of the campaign, and the parameters that have one value in all runs."""
     known = {str(name): values.values[values.notnull().values] for name, values in done.coords.items()}
     return {**done.attrs, **{name: values[0] for name, values in known.items() if len(np.unique(values)) == 1}}
 
 
 def _finest(names: list[str], cases: dict[str, Case]) -> str:
-    return max((name for name in names if cases[name].knob in RESOLUTION), key=lambda name: cases[name].particles)
+    return max((name for name in names if cases[name].setting in RESOLUTION), key=lambda name: cases[name].particles)
 
 
 def _mean(values: xr.DataArray) -> dict[str, xr.DataArray]:
@@ -81,11 +75,11 @@ def _mean(values: xr.DataArray) -> dict[str, xr.DataArray]:
     }
 
 
-def _change(values: xr.DataArray, found: xr.Dataset, other: str, role: str) -> dict[str, xr.DataArray]:
-    """Difference of every case to another one, which itself has none."""
+def _change(values: xr.DataArray, data: xr.Dataset, other: str, role: str) -> dict[str, xr.DataArray]:
+    """Difference of every case to another one; NaN for that one itself."""
     reference = values.sel(case=other, drop=True)
     elsewhere = values["case"] != other
-    change, half = _difference(values, reference, same_bodies=found["particles"] == found["particles"].sel(case=other))
+    change, half = _difference(values, reference, same_bodies=data["particles"] == data["particles"].sel(case=other))
     name, variable = f"{values.name}_minus_{role}", OUTCOMES[str(values.name)]
     long_name = f"{variable.long_name}, minus that of the {role} case"
     units = {"units": variable.units}
@@ -101,7 +95,7 @@ def _change(values: xr.DataArray, found: xr.Dataset, other: str, role: str) -> d
 
 
 def _difference(values: xr.DataArray, reference: xr.DataArray, same_bodies: xr.DataArray) -> Difference:
-    """Seed by seed where a seed makes the same bodies, of the means elsewhere."""
+    """Seed by seed where the same seed gives the same bodies, else of the means."""
     pairs, means = paired_difference(values, reference), difference(values, reference)
     change, half = (pair.where(same_bodies, mean) for pair, mean in zip(pairs, means, strict=True))
     return change, half

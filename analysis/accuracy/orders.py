@@ -6,25 +6,27 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import brentq
 
+from analysis.accuracy.cases import RESOLUTION
+
 ORDERS = (0.05, 12.0)
-"""Orders that are looked for."""
+"""Smallest and largest order that is searched for."""
 
 CONSERVED = ("drift_energy", "drift_angular_momentum")
-"""What would be 0 without error, however coarse."""
+"""Errors by themselves: 0 in the exact solution."""
 
 
-def orders(found: xr.Dataset, finest: str) -> dict[str, xr.DataArray]:
-    """Orders between neighbouring resolutions; NaN where the seeds do not resolve both errors, or no order fits.
+def orders(data: xr.Dataset, finest: str) -> dict[str, xr.DataArray]:
+    """Return orders between neighbouring resolutions; NaN where the seeds do not resolve both errors, or no order fits.
 
     Measured outcomes are compared with the finest case; drifts are errors by themselves.
 
     Args:
-        found: accuracy of all cases.
+        data: accuracy of all cases.
         finest: name of the case with the most particles.
     """
-    same = found.sel(case=np.isin(found["knob"], ("none", "particles"))).sortby("particles")
+    same = data.sel(case=np.isin(data["setting"], RESOLUTION)).sortby("particles")
     steps = list(pairwise(str(name) for name in same["case"].values))
-    measured = {name.removesuffix("_minus_finest"): name for name in map(str, found) if name.endswith("_minus_finest")}
+    measured = {name.removesuffix("_minus_finest"): name for name in map(str, data) if name.endswith("_minus_finest")}
     values = {name: [_to_finest(same, one, two, finest, key) for one, two in steps] for name, key in measured.items()}
     values |= {name: [_by_itself(same, one, two, name) for one, two in steps] for name in CONSERVED}
     labels = [f"{int(same['particles'].sel(case=one))} to {int(same['particles'].sel(case=two))}" for one, two in steps]
@@ -40,11 +42,14 @@ def orders(found: xr.Dataset, finest: str) -> dict[str, xr.DataArray]:
 
 
 def observed_order(coarse: float, fine: float, spacings: tuple[float, float, float]) -> float:
-    """The order p of q(h) = q0 + C h^p from its differences to the value at the finest of three spacings.
+    """Return the order p of q(h) = q0 + C h^p from its differences to the value at the finest of three spacings.
 
     Args:
         coarse, fine: differences at the first and the second spacing.
         spacings: three spacings, coarsest first; the last may be 0, where q is exact.
+
+    Returns:
+        The order; NaN where no order within `ORDERS` fits.
     """
     h1, h2, h3 = spacings
 

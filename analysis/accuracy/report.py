@@ -1,4 +1,4 @@
-"""The tables of accuracy in Markdown, and all products in their files."""
+"""The tables of accuracy in Markdown, and the files of a campaign's accuracy."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -7,10 +7,11 @@ import xarray as xr
 
 from analysis.accuracy.cases import cases
 from analysis.accuracy.figure import error_against_cost
-from analysis.accuracy.measure import DRIFTS, MEASURED, accuracy
-from analysis.campaign import read_campaign
+from analysis.accuracy.measure import MEASURED, accuracy
 from analysis.report.figures.style import save
 from analysis.results.collect import collect
+from analysis.results.variables import DRIFTS
+from campaigns.campaign import KeptCampaign, read_campaign
 from engine.errors import SceneError
 from engine.job.storage import write_dataset, write_text
 
@@ -18,53 +19,53 @@ HEADS = {"mass_ratio": "M_lr/M_t", "b_over_a": "b/a", "c_over_a": "c/a", "bulk_d
 DECIMALS = {"mass_ratio": 3, "b_over_a": 3, "c_over_a": 3, "bulk_density": 0}
 
 
-def report(campaign_directory: Path) -> tuple[xr.Dataset, str, list[Path]]:
+def write_accuracy(campaign_directory: Path) -> tuple[xr.Dataset, str, list[Path]]:
     """Write accuracy.nc, accuracy.png and accuracy.md into a campaign's directory.
 
     Returns:
-        The results of its jobs, the text, and the files.
+        The results of its jobs, the text of accuracy.md, and the files.
 
     Raises:
-        SceneError: the campaign is none of cases with several seeds around a base, or its base has no finished run.
+        SceneError: the campaign has other dimensions than case and seed, no case named base, or no finished run of it.
     """
-    known = cases(read_campaign(campaign_directory))
+    known = cases(read_campaign(campaign_directory, KeptCampaign))
     results = collect(campaign_directory)
     if not (results["state"].sel(case="base") == "done").any():
         raise SceneError(f"{campaign_directory}: no run of the case 'base' is done yet; run the campaign first")
-    found = accuracy(results, known)
-    text = markdown(found, len(results["case"]))
+    data = accuracy(results, known)
+    text = markdown(data, len(results["case"]))
     files = [campaign_directory / f"accuracy.{kind}" for kind in ("nc", "png", "md")]
-    write_dataset(files[0], found)
-    save(error_against_cost(found), files[1])
+    write_dataset(files[0], data)
+    save(error_against_cost(data), files[1])
     write_text(files[2], text)
     return results, text, files
 
 
-def markdown(found: xr.Dataset, planned: int) -> str:
-    """Values, differences to base and finest case, drifts, and observed orders.
+def markdown(data: xr.Dataset, planned: int) -> str:
+    """Return the tables of values, differences to base and finest case, drifts, and observed orders.
 
     Args:
-        found: accuracy of all cases.
+        data: accuracy of all cases.
         planned: number of cases of the campaign.
     """
-    finest, left_out = found.attrs["finest"], planned - found.sizes["case"]
+    finest, left_out = data.attrs["finest"], planned - data.sizes["case"]
     missing = f" {left_out} cases of the study have no finished run and are left out." if left_out else ""
     bold = (
         "Seed by seed between cases of equal resolution, whose bodies are the same; else of the means. "
         "Bold is resolved, larger than its interval; the rest is not resolved."
     )
     parts = [
-        f"Means over seeds +- half the width of their 95 % confidence interval.{missing}\n\n{_values(found)}",
-        f"Difference to the base. {bold}\n\n{_changes(found, 'base')}",
-        f"Difference to the finest case, {finest}. {bold}\n\n{_changes(found, 'finest')}",
-        f"Size of the relative change of what is conserved, mean over seeds.\n\n{_drifts(found)}",
+        f"Means over seeds +- half the width of their 95 % confidence interval.{missing}\n\n{_values(data)}",
+        f"Difference to the base. {bold}\n\n{_changes(data, 'base')}",
+        f"Difference to the finest case, {finest}. {bold}\n\n{_changes(data, 'finest')}",
+        f"Size of the relative change of what is conserved, mean over seeds.\n\n{_drifts(data)}",
         "Observed orders in particle spacing, from one number of particles to the next; a dash where seeds do not "
-        f"resolve both errors or no order fits. Drifts count from 0.\n\n{_orders(found)}",
+        f"resolve both errors or no order fits. Drifts count from 0.\n\n{_orders(data)}",
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def _values(found: xr.Dataset) -> str:
+def _values(data: xr.Dataset) -> str:
     rows = [
         [
             name,
@@ -73,37 +74,37 @@ def _values(found: xr.Dataset) -> str:
             f"{float(case['steps']):,.0f}",
             f"{float(case['cpu_time']):.0f}",
         ]
-        for name, case in _each(found)
+        for name, case in _each(data)
     ]
     return _table(["case", "runs", *HEADS.values(), "steps", "CPU time [s]"], rows)
 
 
-def _changes(found: xr.Dataset, role: str) -> str:
+def _changes(data: xr.Dataset, role: str) -> str:
     rows = [
         [name, *(_number(case, f"{key}_minus_{role}", DECIMALS[key], "+") for key in MEASURED)]
-        for name, case in _each(found)
+        for name, case in _each(data)
         if case[f"mass_ratio_minus_{role}"].notnull()
     ]
     return _table(["case", *HEADS.values()], rows)
 
 
-def _drifts(found: xr.Dataset) -> str:
-    rows = [[name, *(f"{float(case[key]):.2g}" for key in DRIFTS)] for name, case in _each(found)]
+def _drifts(data: xr.Dataset) -> str:
+    rows = [[name, *(f"{float(case[key]):.2g}" for key in DRIFTS)] for name, case in _each(data)]
     return _table(["case", "mass", "momentum", "angular momentum", "energy"], rows)
 
 
-def _orders(found: xr.Dataset) -> str:
-    names = [str(name) for name in found if str(name).startswith("order_")]
+def _orders(data: xr.Dataset) -> str:
+    names = [str(name) for name in data if str(name).startswith("order_")]
     heads = [name.removeprefix("order_").replace("_", " ") for name in names]
     rows = [
-        [str(step), *(_plain(float(found[name].sel(refinement=step)), 1) for name in names)]
-        for step in found["refinement"].values
+        [str(step), *(_plain(float(data[name].sel(refinement=step)), 1) for name in names)]
+        for step in data["refinement"].values
     ]
     return _table(["particles", *heads], rows)
 
 
-def _each(found: xr.Dataset) -> Iterable[tuple[str, xr.Dataset]]:
-    return ((str(name), found.sel(case=name)) for name in found["case"].values)
+def _each(data: xr.Dataset) -> Iterable[tuple[str, xr.Dataset]]:
+    return ((str(name), data.sel(case=name)) for name in data["case"].values)
 
 
 def _number(case: xr.Dataset, name: str, decimals: int | None = None, sign: str = "") -> str:

@@ -1,4 +1,4 @@
-"""What a run conserved: the drift of each conserved quantity over its history."""
+"""Conservation in a run: the relative change of each conserved quantity over its history."""
 
 from pathlib import Path
 
@@ -7,13 +7,12 @@ import xarray as xr
 
 from engine.errors import JobError
 from engine.job.storage import read_dataset
+from engine.quantities import CONSERVED, HISTORY
 from engine.scene.bodies import Body
 from engine.scene.scene import Scene
 
 NEGLIGIBLE = 1e-6
-"""An initial angular momentum below this share of sum m |x| |v| is none: a head-on impact."""
-
-QUANTITIES = ("mass", "momentum", "angular_momentum", "kinetic_energy", "total_energy")
+"""An initial angular momentum below this fraction of sum m |x| |v| counts as zero: a head-on impact."""
 
 
 def read_history(path: Path) -> xr.Dataset:
@@ -23,29 +22,27 @@ def read_history(path: Path) -> xr.Dataset:
         JobError: the file is missing, damaged, empty, or lacks a quantity.
     """
     history = read_dataset(path)
-    missing = [name for name in ("time", *QUANTITIES) if name not in history.variables]
+    missing = [name for name in ("time", "kinetic_energy", *CONSERVED) if name not in history.variables]
     if missing or not history.sizes["time"]:
         raise JobError(f"{path}: not a history: lacks {', '.join(missing) or 'any row'}")
     return history
 
 
 def drifts(history: xr.Dataset, scene: Scene) -> xr.Dataset:
-    """Relative change since the start of mass, momentum, angular_momentum and energy [-], over `time` [s].
+    """Relative change since the start of every conserved quantity [-], over `time` [s].
 
     Mass is relative to its start; momentum to sum m |v| and angular momentum to |L| of the bodies at the start
     (NaN without any); energy to the kinetic energy at the start. Vectors give the magnitude of their change.
     """
     start = history.isel(time=0)
-    change = history[list(QUANTITIES)] - start[list(QUANTITIES)]
     momentum, angular_momentum = _scales(scene)
-    return xr.Dataset(
-        {
-            "mass": change["mass"] / _scale(float(start["mass"])),
-            "momentum": _magnitude(change["momentum"]) / _scale(momentum),
-            "angular_momentum": _magnitude(change["angular_momentum"]) / _scale(angular_momentum),
-            "energy": change["total_energy"] / _scale(float(start["kinetic_energy"])),
-        }
-    )
+    scales = {
+        "mass": float(start["mass"]),
+        "momentum": momentum,
+        "angular_momentum": angular_momentum,
+        "total_energy": float(start["kinetic_energy"]),
+    }
+    return xr.Dataset({name: _size(history[name] - start[name]) / _scale(scales[name]) for name in CONSERVED})
 
 
 def _scales(scene: Scene) -> tuple[float, float]:
@@ -62,8 +59,10 @@ def _angular_momentum(body: Body) -> np.ndarray:
     return np.asarray(body.mass * np.cross(body.position, body.velocity) + body.spin_momentum)
 
 
-def _magnitude(vector: xr.DataArray) -> xr.DataArray:
-    return (vector**2).sum("space", skipna=False) ** 0.5
+def _size(change: xr.DataArray) -> xr.DataArray:
+    """Magnitude of a vector; a scalar keeps its sign."""
+    is_vector = HISTORY[str(change.name)].is_vector
+    return (change**2).sum("space", skipna=False) ** 0.5 if is_vector else change
 
 
 def _scale(value: float) -> float:

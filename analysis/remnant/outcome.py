@@ -1,19 +1,20 @@
 """One job in, its outcome as a flat set of numbers out."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.remnant.conservation import drifts, read_history
 from analysis.remnant.ellipsoid import THIN, bulk_density, ellipsoid_of
 from analysis.remnant.fragments import as_points, bound_to_largest, clumps_of
 from analysis.remnant.hull import hull_of
-from analysis.remnant.particles import Particles, read_particles, snapshots
+from analysis.remnant.particles import Integers, Particles, read_particles, snapshots
 from analysis.remnant.settling import is_settled, shape_change
 from analysis.remnant.spin import spin_period
-from analysis.results.variables import DAMAGED
+from analysis.results.variables import DAMAGED, DRIFTS, UndescribedError, described
 from engine.errors import JobError, RunFault
-from engine.job.directory import JobDirectory
+from engine.job.directory import JobDirectory, JobState
 from engine.scene.scene import scene_in
 
 Numbers = dict[str, float]
@@ -27,35 +28,57 @@ class Outcome:
     """What became of one job.
 
     Attributes:
-        state: as in `Status`, or `corrupt`.
+        job: its directory.
+        state: how the job stands.
         reason: one line on why there are no numbers, empty otherwise.
         numbers: the variables of `analysis.results.variables.OUTCOMES` of a job that is done, none of any other.
+        in_remnant: whether each particle at the end is in the largest remnant, shape [particle_count]; empty likewise.
     """
 
-    state: str
-    reason: str
-    numbers: Numbers
+    job: JobDirectory
+    state: JobState
+    reason: str = ""
+    numbers: Numbers = field(default_factory=dict)
+    in_remnant: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+
+    def read_remnant(self) -> Particles:
+        """Read the particles of the largest remnant of a job that is done.
+
+        Raises:
+            JobError, RunFault: as `read_particles`.
+        """
+        return read_particles(self.job.final).select(self.in_remnant)
+
+
+Outcomes = dict[str, Outcome]
+"""The outcome of each job of a campaign, by job id."""
 
 
 def outcome(job: JobDirectory, physics_version: int) -> Outcome:
-    """The outcome of a job; a damaged one is `corrupt` and never raises.
+    """The outcome of a job; a damaged one is `corrupt` and raises nothing.
 
     Args:
         job: the job directory.
         physics_version: a job computed with any other is corrupt.
+
+    Raises:
+        UndescribedError: as `measure`.
     """
     try:
         status = job.status()
-        if status.state != "done":
-            return Outcome(str(status.state), _line(status.reason), {})
+        if status.state != JobState.DONE:
+            return Outcome(job, JobState(status.state), _line(status.reason))
         particles = read_particles(job.final)
         if particles.physics_version != physics_version:
             raise JobError(f"computed with physics version {particles.physics_version}, not {physics_version}")
-        return Outcome("done", "", measure(job, particles))
+        labels = clumps_of(particles)
+        return Outcome(job, JobState.DONE, numbers=measure(job, particles, labels), in_remnant=labels == 0)
     except RunFault as fault:
-        return Outcome("failed", _line(fault), {})
+        return Outcome(job, JobState.FAILED, _line(fault))
+    except UndescribedError:
+        raise
     except Exception as error:  # whatever is wrong with one job must not hide the others
-        return Outcome("corrupt", f"{_line(error)}; {ANEW}", {})
+        return Outcome(job, JobState.CORRUPT, f"{_line(error)}; {ANEW}")
 
 
 def latest(job: JobDirectory) -> Particles:
@@ -73,35 +96,36 @@ def latest(job: JobDirectory) -> Particles:
     return read_particles(taken[-1][1])
 
 
-def measure(job: JobDirectory, particles: Particles) -> Numbers:
-    """Every variable of `analysis.results.variables.OUTCOMES`.
+def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Numbers:
+    """Measure every variable of `analysis.results.variables.OUTCOMES`.
 
     Args:
         job: the job directory, for its scene, history and snapshots.
         particles: its final state, or an earlier one.
+        labels: clump of each particle, from `clumps_of`, shape [particle_count].
 
     Raises:
         JobError, SceneError: a file of the job cannot be read, or is of another scene.
+        UndescribedError: a variable is measured and not described, or described and not measured.
     """
     scene, status = scene_in(job.path), job.status()
     if particles.scene_hash != scene.hash():
         raise JobError(f"{job.path}: holds particles that are not of the scene in this directory")
-    labels = clumps_of(particles)
     remnant = particles.select(labels == 0)
     change = shape_change(remnant, job)
     last = drifts(read_history(job.history), scene).isel(time=-1)
-    return (
+    return described(
         _masses(particles, labels, scene.bodies[0].mass)
         | _ellipsoid(remnant)
         | _hull(remnant)
         | _interior(remnant)
         | {"time_after_contact": particles.time, "shape_change": change, "settled": is_settled(change)}
-        | {f"drift_{name}": float(value) for name, value in last.data_vars.items()}
+        | {drift: float(last[name]) for drift, name in DRIFTS.items()}
         | {"steps": float(status.step), "wall_time": status.wall_time, "cpu_time": status.cpu_time}
     )
 
 
-def _masses(particles: Particles, labels: np.ndarray, target: float) -> Numbers:
+def _masses(particles: Particles, labels: Integers, target: float) -> Numbers:
     clumps = as_points(labels, particles.mass, particles.position, particles.velocity)
     bound = clumps.mass[bound_to_largest(clumps)].sum()
     return {

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from engine.errors import JobError, RunFault
 from engine.job.directory import JobDirectory
 from engine.job.storage import is_finite, read_dataset
+from engine.quantities import PARTICLES
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-VECTORS = ("position", "velocity")
-SCALARS = ("mass", "J", "damage")
+MEASURED = ("position", "velocity", "mass", "J", "damage")
+"""Variables of a particle file of which outcomes are made, beside the body."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Particles:
 
     def select(self, chosen: NDArray[np.bool_]) -> "Particles":
         """The particles where `chosen`, shape [particle_count], holds."""
-        return replace(self, **{name: getattr(self, name)[chosen] for name in (*VECTORS, *SCALARS, "body")})
+        return replace(self, **{name: getattr(self, name)[chosen] for name in (*MEASURED, "body")})
 
 
 def read_particles(path: Path) -> Particles:
@@ -72,9 +73,8 @@ def _particles(dataset: xr.Dataset) -> Particles:
     if not dataset.sizes["particle"]:
         raise ValueError("it holds no particle")
     return Particles(
-        **{name: _values(dataset[name], "particle", "space") for name in VECTORS},
-        **{name: _values(dataset[name], "particle") for name in SCALARS},
-        body=_values(dataset["body"], "particle").astype(np.int64),
+        **{name: _values(dataset, name) for name in MEASURED},
+        body=_values(dataset, "body").astype(np.int64),
         spacing=float(dataset.attrs["spacing"]),
         time=float(dataset.attrs["time"]),
         physics_version=int(dataset.attrs["physics_version"]),
@@ -82,8 +82,8 @@ def _particles(dataset: xr.Dataset) -> Particles:
     )
 
 
-def _values(variable: xr.DataArray, *dims: str) -> Array:
-    return variable.transpose(*dims).to_numpy().astype(np.float64)
+def _values(dataset: xr.Dataset, name: str) -> Array:
+    return dataset[name].transpose(*PARTICLES[name].dims("particle")).to_numpy().astype(np.float64)
 
 
 def snapshots(job: JobDirectory) -> list[tuple[float, Path]]:

@@ -1,42 +1,85 @@
 """A campaign on one page, report.html, that needs no other file: to send, to print, to keep with a paper."""
 
-import json
 from base64 import b64encode
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 import xarray as xr
 from jinja2 import Environment, PackageLoader
+from pydantic import BaseModel, ConfigDict, ValidationError
 
-from analysis.campaign import Campaign
-from analysis.report.figures.style import Directories
+from analysis.remnant.outcome import Outcomes
+from analysis.results.collect import Collected
 from analysis.results.tables import as_shown, reasons, shape_table, unresolved
+from analysis.results.variables import DRIFTS
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_text
-
-DRIFTS = ("drift_mass", "drift_momentum", "drift_angular_momentum", "drift_energy")
 
 _page = Environment(
     loader=PackageLoader("analysis.report"), autoescape=True, trim_blocks=True, lstrip_blocks=True
 ).get_template("report.html")
 
 
-def write_report(
-    campaign: Campaign, results: xr.Dataset, directories: Directories, figures: Sequence[tuple[str, Path]], path: Path
-) -> None:
+class Code(BaseModel):
+    """The code of a session.
+
+    Attributes:
+        commit: of its repository.
+        dirty: whether it was changed since.
+    """
+
+    commit: str = "unknown"
+    dirty: bool = False
+
+
+class Session(BaseModel):
+    """What provenance.json tells of one session of a job.
+
+    Attributes:
+        git: its code.
+        python, arch, precision, threads, platform: in which it ran.
+        packages: their versions.
+    """
+
+    model_config = ConfigDict(coerce_numbers_to_str=True)
+
+    git: Code = Code()
+    python: str = "unknown"
+    arch: str = "unknown"
+    precision: str = "unknown"
+    threads: str = "unknown"
+    platform: str = "unknown"
+    packages: dict[str, str] = {}
+
+    def facts(self) -> dict[str, str]:
+        """Code, interpreter, device and packages, each with its name."""
+        code = f"{self.git.commit}{' with changes' if self.git.dirty else ''}"
+        return {"code": code} | self.model_dump(exclude={"git", "packages"}) | self.packages
+
+
+class Provenance(BaseModel):
+    """Content of provenance.json.
+
+    Attributes:
+        sessions: of one job, oldest first.
+    """
+
+    sessions: list[Session]
+
+
+def write_report(found: Collected, figures: Sequence[tuple[str, Path]], path: Path) -> None:
     """Write the page of a campaign.
 
     Args:
-        campaign: its description.
-        results: its results.nc.
-        directories: its jobs.
+        found: the campaign, the outcomes of its jobs, and its results.
         figures: captions and PNG files, in the order of the page.
         path: where the page is written.
     """
+    results = found.results
     text = _page.render(
-        campaign=campaign,
+        campaign=found.campaign,
+        description=found.campaign.study.get("description", ""),
         counts=results["state"].to_series().value_counts().to_dict(),
         table=_html(shape_table(results)),
         notes=[*unresolved(results), *reasons(results)],
@@ -44,7 +87,7 @@ def write_report(
         drifts=[_largest(results[name]) for name in DRIFTS],
         cpu_hours=float(results["cpu_time"].sum()) / 3600.0,
         settings={name: _plain(value) for name, value in results.attrs.items()},
-        sessions=_sessions(directories),
+        sessions=_sessions(found.outcomes),
     )
     write_text(path, text)
 
@@ -65,32 +108,23 @@ def _largest(drift: xr.DataArray) -> tuple[str, str]:
     return str(drift.attrs["long_name"]), f"{float(abs(drift).max()):.2g}"
 
 
-def _plain(value: Any) -> str:
+def _plain(value: object) -> str:
     return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 
-def _sessions(directories: Directories) -> dict[str, list[str]]:
+def _sessions(outcomes: Outcomes) -> dict[str, list[str]]:
     """Every code, package and device that computed a job, each named once."""
     found: dict[str, set[str]] = {}
-    for directory in directories.values():
-        for session in _sessions_of(JobDirectory(directory)):
-            for name, value in _facts(session):
+    for outcome in outcomes.values():
+        for session in _sessions_of(outcome.job):
+            for name, value in session.facts().items():
                 found.setdefault(name, set()).add(value)
     return {name: sorted(values) for name, values in found.items()}
 
 
-def _sessions_of(job: JobDirectory) -> list[Any]:
-    """A damaged record must not hide the others."""
+def _sessions_of(job: JobDirectory) -> list[Session]:
+    """The sessions of a job; none when the record is missing or damaged, so that the others are still shown."""
     try:
-        return list(json.loads(job.provenance.read_text(encoding="utf-8"))["sessions"])
-    except (OSError, ValueError, KeyError, TypeError):
+        return Provenance.model_validate_json(job.provenance.read_bytes()).sessions
+    except (OSError, ValidationError):
         return []
-
-
-def _facts(session: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    git = session.get("git", {})
-    yield "code", f"{git.get('commit', 'unknown')}{' with changes' if git.get('dirty') else ''}"
-    for name in ("python", "arch", "precision", "threads", "platform"):
-        yield name, str(session.get(name, "unknown"))
-    for package, version in session.get("packages", {}).items():
-        yield package, str(version)

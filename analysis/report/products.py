@@ -4,11 +4,10 @@ from pathlib import Path
 
 import xarray as xr
 
-from analysis.campaign import read_campaign
 from analysis.report.figures import angle, conservation, gallery, maps
 from analysis.report.figures.style import Drawing, save
 from analysis.report.page import write_report
-from analysis.results.collect import collect
+from analysis.results.collect import collect_with_outcomes
 from analysis.results.tables import write_shape_table
 
 FIGURES: tuple[Drawing, ...] = (gallery, angle, maps, conservation)
@@ -21,15 +20,14 @@ def plots(campaign_directory: Path) -> tuple[xr.Dataset, list[Path]]:
     Raises:
         SceneError: there is no campaign.json, or it does not describe a campaign.
     """
-    results, campaign = collect(campaign_directory), read_campaign(campaign_directory)
-    directories = {job.id: campaign_directory / job.directory for job in campaign.jobs}
+    found = collect_with_outcomes(campaign_directory)
     figures = campaign_directory / "figures"
     figures.mkdir(exist_ok=True)
     table, page = campaign_directory / "shape_table.csv", campaign_directory / "report.html"
-    write_shape_table(results, table)
+    write_shape_table(found.results, table)
     paths = [figures / f"{drawing.NAME}.png" for drawing in FIGURES]
     for drawing, path in zip(FIGURES, paths, strict=True):
-        save(drawing.draw(results, directories), path)
+        save(drawing.draw(found.results, found.outcomes), path)
     captioned = [(drawing.CAPTION, path) for drawing, path in zip(FIGURES, paths, strict=True)]
-    write_report(campaign, results, directories, captioned, page)
-    return results, [table, *paths, page]
+    write_report(found, captioned, page)
+    return found.results, [table, *paths, page]

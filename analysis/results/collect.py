@@ -1,47 +1,70 @@
 """Every job of a campaign in one data set, results.nc."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from analysis.campaign import NONE, Campaign, Scalar, plain, read_campaign
-from analysis.remnant.outcome import Outcome, outcome
+from analysis.campaign import NONE, Scalar, parameters, plain
+from analysis.remnant.outcome import Outcome, Outcomes, outcome
 from analysis.results.error_bars import combine
 from analysis.results.variables import OUTCOMES, TEXTS, parameter
+from campaigns.campaign import KeptCampaign, read_campaign
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
+
+Column = NDArray[np.float64] | NDArray[np.object_]
+"""Numbers or texts of all jobs, shape [job_count]."""
 
 ALWAYS = ("velocity", "angle", "end_time")
 """Parameters that are coordinates even when every job has the same."""
 
 
-def collect(campaign_directory: Path) -> xr.Dataset:
-    """Measure every job, write results.nc into the campaign directory and return it.
+@dataclass(frozen=True)
+class Collected:
+    """What is known of a campaign.
 
-    With error bars the jobs are in members.nc, and results.nc holds what they say together (see error_bars.py).
-    Cells without an outcome are NaN and carry the state of their job. Parameters in which jobs differ are
-    coordinates; those all jobs share are attributes.
+    Attributes:
+        campaign: its description.
+        outcomes: of each of its jobs, by job id.
+        results: content of results.nc.
+    """
+
+    campaign: KeptCampaign
+    outcomes: Outcomes
+    results: xr.Dataset
+
+
+def collect(campaign_directory: Path) -> xr.Dataset:
+    """Measure every job of a campaign, write results.nc and return it; see `collect_with_outcomes`."""
+    return collect_with_outcomes(campaign_directory).results
+
+
+def collect_with_outcomes(campaign_directory: Path) -> Collected:
+    """Measure every job of a campaign and write results.nc into its directory.
+
+    With error bars the jobs are in members.nc, and results.nc contains their means and errors (see error_bars.py).
+    Points without an outcome are NaN and have the state of their job. Parameters in which jobs differ are
+    coordinates; those that all jobs share are attributes.
 
     Raises:
         SceneError: there is no campaign.json, or it does not describe a campaign.
     """
-    campaign = read_campaign(campaign_directory)
-    outcomes = [
-        outcome(JobDirectory(campaign_directory / job.directory), campaign.physics_version) for job in campaign.jobs
-    ]
-    results = assemble(campaign, outcomes)
+    campaign = read_campaign(campaign_directory, KeptCampaign)
+    directories = {job.id: JobDirectory(campaign_directory / job.directory) for job in campaign.jobs}
+    outcomes = {name: outcome(directory, campaign.physics_version) for name, directory in directories.items()}
+    results = assemble(campaign, [outcomes[job.id] for job in campaign.jobs])
     if campaign.has_error_bars:
         write_dataset(campaign_directory / "members.nc", results)
         results = combine(results)
     write_dataset(campaign_directory / "results.nc", results)
-    return results
+    return Collected(campaign, outcomes, results)
 
 
-def assemble(campaign: Campaign, outcomes: list[Outcome]) -> xr.Dataset:
+def assemble(campaign: KeptCampaign, outcomes: list[Outcome]) -> xr.Dataset:
     """The data set of a campaign from the outcome of each of its jobs, in their order."""
     shared, differing = _parameters(campaign)
     return xr.Dataset(
@@ -56,26 +79,26 @@ def assemble(campaign: Campaign, outcomes: list[Outcome]) -> xr.Dataset:
     )
 
 
-def _parameters(campaign: Campaign) -> tuple[dict[str, Scalar], list[str]]:
+def _parameters(campaign: KeptCampaign) -> tuple[dict[str, Scalar], list[str]]:
     """Parameters all jobs share, and the names of those that are coordinates beside the axes."""
-    tables = [job.parameters for job in campaign.jobs]
+    tables = [parameters(job) for job in campaign.jobs]
     names = list(dict.fromkeys(name for table in tables for name in table))
     shared = {name: tables[0][name] for name in names if len({table.get(name, NONE) for table in tables}) == 1}
     differing = [name for name in names if name not in shared and any(t.get(name, NONE) != NONE for t in tables)]
     return shared, [name for name in dict.fromkeys((*ALWAYS, *differing)) if name not in campaign.dims]
 
 
-def _axes(campaign: Campaign) -> dict[str, xr.DataArray]:
+def _axes(campaign: KeptCampaign) -> dict[str, xr.DataArray]:
     columns = {dim: _column([plain(value) for value in campaign.coords[dim]]) for dim in campaign.dims}
     return {dim: xr.DataArray(column, dims=dim, attrs=_attributes(dim)) for dim, column in columns.items()}
 
 
-def _parameter(campaign: Campaign, name: str) -> xr.DataArray:
-    column = _column([job.parameters.get(name, NONE) for job in campaign.jobs])
+def _parameter(campaign: KeptCampaign, name: str) -> xr.DataArray:
+    column = _column([parameters(job).get(name, NONE) for job in campaign.jobs])
     return _grid(campaign, column, np.nan if column.dtype.kind == "f" else NONE, _attributes(name))
 
 
-def _numbers(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
+def _numbers(campaign: KeptCampaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
     return {
         name: _grid(
             campaign, _column([found.numbers.get(name, NONE) for found in outcomes]), np.nan, variable.attributes()
@@ -84,29 +107,29 @@ def _numbers(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataAr
     }
 
 
-def _texts(campaign: Campaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
-    cells = [
-        {"state": found.state, "reason": found.reason, "job": job.id}
+def _texts(campaign: KeptCampaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
+    texts = [
+        {"state": found.state.value, "reason": found.reason, "job": job.id}
         for job, found in zip(campaign.jobs, outcomes, strict=True)
     ]
     empty = {"state": JobState.MISSING.value, "reason": "", "job": ""}
     return {
         name: _grid(
-            campaign, np.array([cell[name] for cell in cells], dtype=object), empty[name], variable.attributes()
+            campaign, np.array([text[name] for text in texts], dtype=object), empty[name], variable.attributes()
         )
         for name, variable in TEXTS.items()
     }
 
 
-def _grid(campaign: Campaign, column: NDArray[Any], empty: float | str, attributes: dict[str, str]) -> xr.DataArray:
-    """One value per job, each in its cell; `empty` where no job is."""
+def _grid(campaign: KeptCampaign, column: Column, empty: float | str, attributes: dict[str, str]) -> xr.DataArray:
+    """The values of all jobs, each at the point of its job; `empty` where there is no job."""
     values = np.full(campaign.shape, empty, dtype=column.dtype)
     for job, value in zip(campaign.jobs, column, strict=True):
-        values[campaign.cell(job)] = value
+        values[campaign.position(job)] = value
     return xr.DataArray(values, dims=campaign.dims, attrs=attributes)
 
 
-def _column(values: Sequence[Scalar]) -> NDArray[Any]:
+def _column(values: Sequence[Scalar]) -> Column:
     """Numbers as f64 with NaN for none; anything with other texts in it as texts."""
     if any(isinstance(value, str) and value != NONE for value in values):
         return np.array([str(value) for value in values], dtype=object)

@@ -55,27 +55,27 @@ def norm_squared(S):
 
 
 @ti.func
-def determinant_increment(A):
-    """det(I + A) - 1, without cancellation for small A."""
+def determinant_increment(H):
+    """det(I + H) - 1, without cancellation for small H."""
     minors = (
-        A[0, 0] * A[1, 1]
-        - A[0, 1] * A[1, 0]
-        + A[0, 0] * A[2, 2]
-        - A[0, 2] * A[2, 0]
-        + A[1, 1] * A[2, 2]
-        - A[1, 2] * A[2, 1]
+        H[0, 0] * H[1, 1]
+        - H[0, 1] * H[1, 0]
+        + H[0, 0] * H[2, 2]
+        - H[0, 2] * H[2, 0]
+        + H[1, 1] * H[2, 2]
+        - H[1, 2] * H[2, 1]
     )
-    return A.trace() + minors + A.determinant()
+    return H.trace() + minors + H.determinant()
 
 
 @ti.func
-def half_log(B):
-    """ln V = log(I + B) / 2 of the left Cauchy-Green tensor I + B."""
+def half_log(b_minus_I):
+    """Return ln V = ln(b) / 2 of a left Cauchy-Green tensor b, from b - I."""
     result = mat3(0.0)
-    if norm_squared(B) <= SERIES_LIMIT**2:
-        result = _half_log_series(B)
+    if norm_squared(b_minus_I) <= SERIES_LIMIT**2:
+        result = _half_log_series(b_minus_I)
     else:
-        values, vectors = eigensystem(B)
+        values, vectors = eigensystem(b_minus_I)
         logs = vec3(0.5 * log1p(values[0]), 0.5 * log1p(values[1]), 0.5 * log1p(values[2]))
         result = _assemble(logs, vectors)
     return result
@@ -94,9 +94,9 @@ def exp_minus_identity(S):
 
 
 @ti.func
-def _half_log_series(B):
-    """atanh(Z), Z = B (2I + B)^-1, with powers of Z reduced by its characteristic polynomial."""
-    Z = unpack(pack(B @ (2.0 * identity() + B).inverse()))
+def _half_log_series(b_minus_I):
+    """atanh(Z), Z = (b - I) (b + I)^-1, with powers of Z reduced by its characteristic polynomial."""
+    Z = unpack(pack(b_minus_I @ (2.0 * identity() + b_minus_I).inverse()))
     square = unpack(pack(Z @ Z))
     trace, third = Z.trace(), Z.determinant()
     second = 0.5 * (trace * trace - square.trace())

@@ -3,13 +3,12 @@
 A node's true bounding box decides whether its multipole is accepted, so any distribution of particles is allowed.
 """
 
-from typing import Any
-
 import taichi as ti
 
 from engine.device.backend import TASK, on_gpu, vec3
 from engine.device.fields import capacity
 from engine.gravity.multipoles import Multipoles
+from engine.state.particles import Particles
 
 BATCH = 64
 """Accepted nodes that a group of targets collects before their field is summed."""
@@ -23,7 +22,7 @@ class BarnesHut(Multipoles):
     stay in registers. On a GPU every particle walks alone. Arguments as `Multipoles`.
     """
 
-    def __init__(self, particles: Any, radius: float, opening: float) -> None:
+    def __init__(self, particles: Particles, radius: float, opening: float) -> None:
         super().__init__(particles, radius, opening)
         self.by_leaf = not on_gpu()
         self.batch = BATCH if self.by_leaf else 1

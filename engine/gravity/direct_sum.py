@@ -1,20 +1,19 @@
 """Gravity as a sum over all pairs, exact to round-off; the reference for the tree (engine/physics.md, section 7)."""
 
-from typing import Any
-
 import numpy as np
 import taichi as ti
 
+from engine.arrays import Indices, Vectors
 from engine.device.backend import TASK, on_gpu
-from engine.gravity.interfaces import Indices, Vectors
 from engine.gravity.self_gravity import LANES, SelfGravity
+from engine.state.particles import Particles
 
 
 @ti.data_oriented
 class DirectSum(SelfGravity):
     """Sum over all pairs; arguments as `SelfGravity`."""
 
-    def __init__(self, particles: Any, radius: float) -> None:
+    def __init__(self, particles: Particles, radius: float) -> None:
         super().__init__(particles, radius, -(-particles.count // LANES) * LANES)
         self.task = 1 if on_gpu() else TASK
 

@@ -6,17 +6,17 @@ to another, and the leaves follow one another in memory.
 """
 
 import math
-from typing import Any
 
 import numpy as np
 import taichi as ti
 
+from engine.arrays import Indices, Vectors
 from engine.device.backend import Real, mat3, vec3, vec4, vec6
 from engine.device.fields import capacity
 from engine.device.tensors import identity, pack, unpack
-from engine.gravity.interfaces import Indices, Vectors
 from engine.gravity.median_partition import median_order
 from engine.gravity.self_gravity import LANES, SelfGravity
+from engine.state.particles import Particles
 
 LEAF = 24
 """Most particles in a leaf: three rows."""
@@ -43,7 +43,7 @@ class Multipoles(SelfGravity):
         nearest: least distance from the centre of mass at which the multipole of a node is accepted.
     """
 
-    def __init__(self, particles: Any, radius: float, opening: float) -> None:
+    def __init__(self, particles: Particles, radius: float, opening: float) -> None:
         self.depth, self.size = _shape(particles.count)
         self.room = -(-self.size // LANES) * LANES
         super().__init__(particles, radius, self.room << self.depth)

@@ -1,11 +1,10 @@
 """The history of a run: its conserved quantities at regular times, as a data set that grows by rows."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from engine.job.storage import Attributes
 from engine.quantities import HISTORY, SPACE
 from engine.simulation.conservation import Row
 
@@ -20,7 +19,7 @@ class History:
         """Add the newest row."""
         self.rows.append(row)
 
-    def dataset(self, attributes: dict[str, Any]) -> xr.Dataset:
+    def dataset(self, attributes: Attributes) -> xr.Dataset:
         """All rows with CF attributes, dimension time."""
         variables = {name: _variable(name, [row[name] for row in self.rows]) for name in self.rows[0] if name != "time"}
         time = xr.Variable("time", np.array([float(row["time"]) for row in self.rows]), HISTORY["time"].attributes())
@@ -34,5 +33,5 @@ class History:
 
 
 def _variable(name: str, values: list[NDArray[np.float64]]) -> xr.Variable:
-    stacked = np.stack(values)
-    return xr.Variable(("time", "space")[: stacked.ndim], stacked, HISTORY[name].attributes())
+    quantity = HISTORY[name]
+    return xr.Variable(quantity.dims("time"), np.stack(values), quantity.attributes())

@@ -9,7 +9,6 @@ import sys
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
 
 from engine import PHYSICS_VERSION
 from engine.device.backend import Real
@@ -32,14 +31,14 @@ def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> 
     write_json(job.provenance, content)
 
 
-def _earlier_sessions(job: JobDirectory) -> list[Any]:
+def _earlier_sessions(job: JobDirectory) -> list[object]:
     try:
         return list(json.loads(job.provenance.read_text(encoding="utf-8"))["sessions"])
     except (OSError, ValueError, KeyError, TypeError):
         return []
 
 
-def _session(arch: str, threads: int) -> dict[str, Any]:
+def _session(arch: str, threads: int) -> dict[str, object]:
     return {
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "command": sys.argv,
@@ -61,7 +60,7 @@ def _version(package: str) -> str:
         return "not installed"
 
 
-def _git_state() -> dict[str, Any]:
+def _git_state() -> dict[str, object]:
     """Commit of the code, whether it was changed since, and a hash of the change."""
     try:
         commit = _git("rev-parse", "HEAD").decode().strip()

@@ -1,10 +1,11 @@
 """The particles of one moment as a data set."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
+from numpy.typing import DTypeLike, NDArray
 
+from engine.arrays import Scalars
+from engine.job.storage import Attributes
 from engine.quantities import PARTICLES, SPACE
 from engine.state.particles import Arrays
 
@@ -12,7 +13,7 @@ FIELDS = ("x", "v", "mass", "j", "E", "damage_root", "body")
 """Particle fields that a snapshot is made of."""
 
 
-def snapshot(state: Arrays, rho0: Any, attributes: dict[str, Any], dtype: type = np.float64) -> xr.Dataset:
+def snapshot(state: Arrays, rho0: Scalars, attributes: Attributes, dtype: DTypeLike = np.float64) -> xr.Dataset:
     """Particles as they are now.
 
     Args:
@@ -36,5 +37,6 @@ def snapshot(state: Arrays, rho0: Any, attributes: dict[str, Any], dtype: type =
     return xr.Dataset(variables, {"space": list(SPACE)}, {"Conventions": "CF-1.11", **attributes})
 
 
-def _variable(name: str, values: Any) -> xr.Variable:
-    return xr.Variable(("particle", "space")[: values.ndim], values, PARTICLES[name].attributes())
+def _variable(name: str, values: NDArray[np.generic]) -> xr.Variable:
+    quantity = PARTICLES[name]
+    return xr.Variable(quantity.dims("particle"), values, quantity.attributes())

@@ -4,14 +4,16 @@ import errno
 import json
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from engine.errors import JobError
+
+Attributes = Mapping[str, str | int | float]
+"""Global attributes of a data set."""
 
 FULL = 1 << 20
 """Free bytes below which a disk counts as full."""
@@ -49,7 +51,7 @@ def remove_partial_files(directory: Path) -> None:
         partial.unlink(missing_ok=True)
 
 
-def write_json(path: Path, content: dict[str, Any]) -> None:
+def write_json(path: Path, content: Mapping[str, object]) -> None:
     """Write `content` as indented JSON."""
     write_text(path, json.dumps(content, indent=1, sort_keys=True) + "\n")
 

@@ -3,24 +3,20 @@
 State of every particle: `j` = det F - 1 and Kirchhoff stress `tau` = J sigma; the laws hold what else they need.
 """
 
-from collections.abc import Sequence
-
 import taichi as ti
 
-from engine.device.backend import Real
 from engine.device.tensors import determinant_increment, identity, pack, symmetric, unpack
 from engine.laws.interfaces import DamageLaw, EnergyLaw, EquationOfStateLaw, ShearLaw, ViscosityLaw
-from engine.scene.material import Material
 from engine.state.particles import Particles
 
 
 @ti.func
-def strain_increment(A):
-    """Logarithmic strain sym(ln(I + A)) of the displacement gradient A, to second order.
+def strain_increment(H):
+    """Logarithmic strain sym(ln(I + H)) of the displacement gradient H, to second order.
 
-    A step of rigid rotation stretches a little, -A^2 / 2: without it a spinning body would lose energy.
+    A step of rigid rotation stretches a little, -H^2 / 2: without it a spinning body would lose energy.
     """
-    return symmetric(A - 0.5 * (A @ A))
+    return symmetric(H - 0.5 * (H @ H))
 
 
 @ti.data_oriented
@@ -29,12 +25,11 @@ class Constitution:
 
     Args:
         particles: state of the particles.
-        eos: equation of state; its `evaluate` gives pressure and squared sound speed.
+        eos: equation of state, which also has the reference density.
         energy: internal energy.
         shear: shear stress, with its strength.
         damage: damage, with its growth.
         viscosity: viscous stress.
-        materials: one per body.
     """
 
     def __init__(
@@ -45,13 +40,9 @@ class Constitution:
         shear: ShearLaw,
         damage: DamageLaw,
         viscosity: ViscosityLaw,
-        materials: Sequence[Material],
     ) -> None:
         self.particles, self.eos, self.energy = particles, eos, energy
         self.shear, self.damage, self.viscosity = shear, damage, viscosity
-        self.table = ti.types.struct(rho0=Real).field(shape=len(materials))
-        for i, material in enumerate(materials):
-            self.table.rho0[i] = material.rho0
 
     @ti.func
     def update(self, p, L, dt):
@@ -63,23 +54,28 @@ class Constitution:
             dt: time step [s].
         """
         body = self.particles.body[p]
-        m, A = self.table[body], dt * L
-        growth, strain = determinant_increment(A), strain_increment(A)
+        rho0, H = self.eos.rho0(body), dt * L
+        growth, strain = determinant_increment(H), strain_increment(H)
         j = self.particles.j[p] + (1.0 + self.particles.j[p]) * growth
-        half_work = 0.5 / m.rho0 * ddot(unpack(self.particles.tau[p]), strain)
+        half_work = 0.5 / rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E, D = self.energy.after(p, 2.0 * half_work), self.damage.value(p)
         J = 1.0 + j
         P, c2 = self.eos.evaluate(p, -j / J, E, body)
         if P < 0.0:
             P *= 1.0 - D
-        s = self.shear.stress(p, A, growth, J, P, E, D, body)
-        stress, diffusivity = self.viscosity.stress(p, symmetric(L), m.rho0 / J, ti.sqrt(c2))
+        s = self.shear.stress(p, H, growth, J, P, E, D, body)
+        stress, diffusivity = self.viscosity.stress(p, symmetric(L), rho0 / J, ti.sqrt(c2))
         tau = s + J * (stress - P * identity())
         self.particles.j[p], self.particles.tau[p] = j, pack(tau)
         # trapezoidal rule: the work of the mean stress, so that elastic energy does not drift
-        self.energy.add(p, half_work + 0.5 / m.rho0 * ddot(tau, strain))
+        self.energy.add(p, half_work + 0.5 / rho0 * ddot(tau, strain))
         self.damage.grow(p, s / J, P, dt, body)
         return self.wave_speed(c2, body), diffusivity
+
+    @ti.func
+    def rho0(self, p):
+        """Return the density of the reference state [kg/m^3] of particle p."""
+        return self.eos.rho0(self.particles.body[p])
 
     @ti.func
     def signal_speed(self, p):
@@ -91,7 +87,7 @@ class Constitution:
     @ti.func
     def wave_speed(self, c2, body):
         """Speed of the fastest wave [m/s]."""
-        return ti.sqrt(c2 + 4.0 / 3.0 * self.shear.modulus(body) / self.table[body].rho0)
+        return ti.sqrt(c2 + 4.0 / 3.0 * self.shear.modulus(body) / self.eos.rho0(body))
 
 
 @ti.func

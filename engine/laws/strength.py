@@ -46,8 +46,13 @@ class Unlimited:
 
 @ti.func
 def return_factor(root_J2, Y):
-    """Share of the deviatoric strain that stays elastic: 1 up to the limit Y of sqrt(J2), their ratio beyond it."""
-    share = ti.cast(1.0, Real)
+    """Return the factor on the deviatoric strain of the radial return: 1 up to sqrt(J2) = Y, Y / sqrt(J2) beyond.
+
+    Args:
+        root_J2: sqrt(J2) of the trial stress [Pa].
+        Y: largest sqrt(J2) [Pa].
+    """
+    factor = ti.cast(1.0, Real)
     if root_J2 > Y:
-        share = Y / root_J2
-    return share
+        factor = Y / root_J2
+    return factor

@@ -1,30 +1,20 @@
 """Tillotson equation of state with all its branches (engine/physics.md, section 2; Benz & Asphaug 1999)."""
 
-from collections.abc import Sequence
-
 import taichi as ti
 
-from engine.device.backend import Real
-from engine.scene.material import Material
+from engine.laws.equation_of_state import MaterialConstants
 
 SOUND_SPEED_FLOOR = 0.1
 """Least sound speed, in units of sqrt(A/rho0): expanded states would otherwise stop having one."""
 
 
 @ti.data_oriented
-class Tillotson:
+class Tillotson(MaterialConstants):
     """Pressure and sound speed from compression and energy.
 
     Args:
         materials: one per body, all of Tillotson's form.
     """
-
-    def __init__(self, materials: Sequence[Material]) -> None:
-        constants = ("rho0", "a", "b", "A", "B", "E0", "E_iv", "E_cv", "alpha", "beta")
-        self.table = ti.types.struct(**dict.fromkeys(constants, Real)).field(shape=len(materials))
-        for i, material in enumerate(materials):
-            for name, value in {"rho0": material.rho0, **material.eos.constants()}.items():
-                getattr(self.table, name)[i] = value
 
     @ti.func
     def evaluate(self, p, mu, energy, body):

@@ -31,7 +31,7 @@ class Blocks:
     Attributes:
         origin: block coordinates, shape [block_count, 3].
         first: range of each block in `order`, shape [block_count + 1].
-        order: particles by block, then by index; those that are alone come last, shape [particle_count].
+        order: particles by block, then by index; ballistic ones come last, shape [particle_count].
         source: for every tile the eight blocks whose copies hold it, or -1; shape [tile_count, 8].
     """
 
@@ -70,11 +70,11 @@ def build_blocks(block: Integers, period: Period = UNBOUNDED) -> Blocks:
         period: blocks after which space repeats along each axis; 0 is unbounded.
     """
     keys, inverse, counts = np.unique(_key(block), return_inverse=True, return_counts=True)
-    alone = (counts == 1) & (_neighbour_count(keys, period) == 1)
-    rank = np.where(alone, len(keys), np.arange(len(keys)))[inverse]
+    ballistic = (counts == 1) & (_neighbour_count(keys, period) == 1)
+    rank = np.where(ballistic, len(keys), np.arange(len(keys)))[inverse]
     order = np.argsort(rank, kind="stable").astype(np.int32)
-    shared = keys[~alone]
-    first = np.concatenate([[0], np.cumsum(counts[~alone])]).astype(np.int32)
+    shared = keys[~ballistic]
+    first = np.concatenate([[0], np.cumsum(counts[~ballistic])]).astype(np.int32)
     return Blocks(_coordinates(shared), first, order, _sources(shared, period))
 
 

@@ -4,23 +4,33 @@ import taichi as ti
 
 from engine.device.backend import Real, vec3
 
+WIDTH = 3
+"""Nodes of a particle along an axis."""
+
+SECOND_MOMENT = 0.25
+"""Second moment of the weights along an axis, sum w_i (x_i - x)^2, in units of dx^2; the same at every position."""
+
 
 @ti.func
 def spline_weights(f):
-    """Quadratic B-spline weights of three nodes at distance f, in cells, above the lowest; f in [0.5, 1.5)."""
+    """Return the weights of the three nodes of every axis.
+
+    Args:
+        f: distance of the particle above its lowest node, in cells, in [0.5, 1.5), shape [3].
+    """
     return ti.Matrix.cols([0.5 * (1.5 - f) ** 2, 0.75 - (f - 1.0) ** 2, 0.5 * (f - 0.5) ** 2])
 
 
 @ti.func
-def moments(weights, f):
-    """Weights along an axis times the distance of their nodes, in cells."""
+def first_moments(weights, f):
+    """Return the weights along an axis times the distance of their nodes from the particle, in cells."""
     return vec3(-f * weights[0], (1.0 - f) * weights[1], (2.0 - f) * weights[2])
 
 
 @ti.func
-def own_share(w):
-    """Sum of the squares of all 27 weights: the mean over its nodes of what a particle itself puts there."""
-    share = ti.cast(1.0, Real)
+def sum_of_squares(w):
+    """Return the sum of w_i^2 over all 27 nodes."""
+    total = ti.cast(1.0, Real)
     for axis in ti.static(range(3)):
-        share *= w[axis, 0] * w[axis, 0] + w[axis, 1] * w[axis, 1] + w[axis, 2] * w[axis, 2]
-    return share
+        total *= w[axis, 0] * w[axis, 0] + w[axis, 1] * w[axis, 1] + w[axis, 2] * w[axis, 2]
+    return total

@@ -1,4 +1,4 @@
-"""Rigid planes that hold the grid back (engine/physics.md, section 11)."""
+"""Rigid planes that bound the grid (engine/physics.md, section 11)."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ STICK = -1.0
 
 @ti.data_oriented
 class Walls:
-    """Velocity that planes leave to what is on or behind them; all may always leave a wall that does not stick.
+    """Planes that nothing crosses; matter may always leave one that does not stick.
 
     Args:
         walls: the scene's walls, at least one.
@@ -30,8 +30,8 @@ class Walls:
             self.table.friction[i] = STICK if wall.friction == "stick" else wall.friction
 
     @ti.func
-    def hold(self, x, velocity):
-        """Velocity [m/s] that is left at x [m]."""
+    def apply(self, x, velocity):
+        """Apply every wall that x is on or behind, in their order."""
         v = velocity
         for i in range(self.count):
             wall = self.table[i]
@@ -40,9 +40,25 @@ class Walls:
         return v
 
 
+@ti.data_oriented
+class NoWalls:
+    """Space without bounds."""
+
+    @ti.func
+    def apply(self, x, velocity):
+        """Leave the velocity as it is."""
+        return velocity
+
+
 @ti.func
 def contact(v, normal, friction):
-    """Velocity after contact: nothing moves into the wall, and Coulomb's impulse slows what slides along it."""
+    """Return the velocity [m/s] after contact: none into the wall, and along it less Coulomb's impulse.
+
+    Args:
+        v: velocity before [m/s].
+        normal: unit vector out of the wall.
+        friction: Coulomb coefficient [-], or `STICK`.
+    """
     result = v
     inward = -v.dot(normal)
     if friction < 0.0:
@@ -50,8 +66,8 @@ def contact(v, normal, friction):
     elif inward > 0.0:
         along = v + inward * normal
         speed = along.norm()
-        share = ti.cast(0.0, Real)
+        kept = ti.cast(0.0, Real)
         if speed > friction * inward:
-            share = 1.0 - friction * inward / speed
-        result = share * along
+            kept = 1.0 - friction * inward / speed
+        result = kept * along
     return result

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import ParamSpec, TypeVar
 
 from engine.device import backend
 from engine.job.checkpoint import load_checkpoint
@@ -13,6 +13,9 @@ from engine.job.directory import JobDirectory
 from engine.profile.parts import parts_of
 from engine.scene.scene import Scene, scene_at
 from engine.simulation.simulation import Simulation
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
 
 
 @dataclass
@@ -104,9 +107,9 @@ def _watch(result: Measurement) -> None:
             setattr(part.content, name, _timed(getattr(part.content, name), cost))
 
 
-def _timed(kernel: Callable[..., Any], cost: Cost) -> Callable[..., Any]:
-    def run(*arguments: Any) -> Any:
+def _timed(kernel: Callable[Arguments, Result], cost: Cost) -> Callable[Arguments, Result]:
+    def run(*arguments: Arguments.args, **named: Arguments.kwargs) -> Result:
         with cost.lap():
-            return kernel(*arguments)
+            return kernel(*arguments, **named)
 
     return run

@@ -14,7 +14,7 @@ def report(result: Measurement) -> RenderableType:
     """Return the parts of a measured scene as a table, and below it what the scene leaves out."""
     simulation, physics = result.simulation, result.simulation.scene.physics
     heading = (
-        f"{simulation.particles.count:,} particles in {int(simulation.transfer.block_count[None]):,} blocks; "
+        f"{simulation.particles.count:,} particles in {int(simulation.stencil.block_count[None]):,} blocks; "
         f"{result.steps} steps measured from t = {result.begun:.6g} s on, "
         f"{_per_step(result, result.whole.wall):.3f} ms each (CPU time {_per_step(result, result.whole.cpu):.3f} ms)"
     )

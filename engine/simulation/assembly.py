@@ -17,7 +17,8 @@ from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
-from engine.mpm.walls import Walls
+from engine.mpm.interfaces import Boundary
+from engine.mpm.walls import NoWalls, Walls
 from engine.scene.scene import Scene
 from engine.scene.tillotson import TillotsonParameters
 from engine.simulation.initial_conditions import all_flaws
@@ -26,7 +27,7 @@ from engine.state.particles import Particles
 
 def constitution(scene: Scene, particles: Particles) -> Constitution:
     """The response of matter."""
-    physics, materials = scene.physics, scene.materials
+    physics = scene.physics
     return Constitution(
         particles,
         _equation_of_state(scene),
@@ -34,7 +35,6 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
         _shear(scene, particles),
         _damage(scene, particles),
         Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
-        materials,
     )
 
 
@@ -44,12 +44,12 @@ def gravity(scene: Scene, particles: Particles) -> Gravity:
     if physics.gravity:
         radius, opening = physics.gravity.softening * scene.spacing, physics.gravity.opening
         return BarnesHut(particles, radius, opening) if opening > 0.0 else DirectSum(particles, radius)
-    return UniformGravity(particles, physics.uniform_gravity) if physics.uniform_gravity else NoGravity()
+    return UniformGravity(physics.uniform_gravity) if physics.uniform_gravity else NoGravity()
 
 
-def walls(scene: Scene) -> Walls | None:
+def walls(scene: Scene) -> Boundary:
     """Rigid planes."""
-    return Walls(scene.physics.walls) if scene.physics.walls else None
+    return Walls(scene.physics.walls) if scene.physics.walls else NoWalls()
 
 
 def _equation_of_state(scene: Scene) -> EquationOfStateLaw:

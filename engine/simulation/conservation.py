@@ -5,9 +5,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.arrays import Scalars, Vector
+from engine.mpm.apic import affine_inertia
 from engine.state.particles import Arrays
 
-Vector = NDArray[np.float64]
 Row = dict[str, NDArray[np.float64]]
 """One row of the history: a name and its value."""
 
@@ -45,7 +46,7 @@ class Totals:
         return self.kinetic_energy + self.affine_kinetic_energy + self.internal_energy + self.gravitational_energy
 
 
-def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: float, half_step_work: float) -> Totals:
+def totals(state: Arrays, dx: float, elastic: Scalars, gravitational_energy: float, half_step_work: float) -> Totals:
     """Conserved quantities of a state.
 
     Args:
@@ -55,7 +56,7 @@ def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: floa
         gravitational_energy, half_step_work: [J].
     """
     m, x, v, C, E = (state[name] for name in ("mass", "x", "v", "C", "E"))
-    inertia = 0.25 * dx**2  # second moment of the quadratic spline, per mass
+    inertia = affine_inertia(dx)
     skew = np.stack([C[:, 2, 1] - C[:, 1, 2], C[:, 0, 2] - C[:, 2, 0], C[:, 1, 0] - C[:, 0, 1]], axis=1)
     return Totals(
         mass=float(np.sum(m)),
@@ -70,7 +71,7 @@ def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: floa
     )
 
 
-def half_step_work(state: Arrays, rho0: Vector, dt: float) -> float:
+def half_step_work(state: Arrays, rho0: Scalars, dt: float) -> float:
     """Work [J] of stress and gravity on the particles' present motion in half a step.
 
     Args:
@@ -85,7 +86,7 @@ def half_step_work(state: Arrays, rho0: Vector, dt: float) -> float:
     return 0.5 * dt * float(np.sum(m * (np.einsum("pi,pi->p", state["v"], state["acceleration"]) - strain / rho0)))
 
 
-def elastic_energy(state: Arrays, rho0: Vector, bulk: Vector, shear: Vector) -> Vector:
+def elastic_energy(state: Arrays, rho0: Scalars, bulk: Scalars, shear: Scalars) -> Scalars:
     """Energy stored in the strain of every particle [J], for small strains.
 
     Args:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from engine.device.backend import EPSILON
 from engine.errors import SMALLER_STEPS, stop
-from engine.mpm.transfer import LARGEST_INCREMENT
+from engine.mpm.time_step import rate_of_motion
 from engine.scene.scene import Scene
 from engine.simulation.bounds import (
     compression_limit,
@@ -82,9 +82,8 @@ class Guard:
         """
         if not dt >= self.shortest_step:
             state = particles.read("v", "C")
-            strain = np.linalg.norm(state["C"], axis=(1, 2)) / LARGEST_INCREMENT
-            rate = np.maximum(np.linalg.norm(state["v"], axis=1) / self.scene.dx, strain)
-            particle, allowed = int(np.argmax(rate)), f"at least {self.shortest_step:.3g}"
+            particle = int(np.argmax(rate_of_motion(state, self.scene.dx)))
+            allowed = f"at least {self.shortest_step:.3g}"
             raise stop("time step [s]", dt, allowed, time, particle, advice=LOOK_CLOSER)
 
     def _check_mass(self, row: Row, time: float) -> None:

@@ -1,5 +1,7 @@
 """Time, time step and the reasons to pause, kept on the device so that steps need no answer from the host."""
 
+from collections.abc import Mapping
+
 import taichi as ti
 
 from engine.device.backend import Real
@@ -29,6 +31,22 @@ class Clock:
         self.time[None], self.end[None], self.pause_time[None] = start, end, start
         self.least_rate[None] = 1.0 / longest_step
         self.fault_particle[None] = 2**31 - 1
+        self.kept = {
+            "time": self.time,
+            "dt": self.dt,
+            "rate": self.rate,
+            "step": self.step,
+            "moved_out": self.moved_out,
+        }
+
+    def read(self) -> dict[str, float | int]:
+        """Return the fields that later steps depend on, by name."""
+        return {name: field[None] for name, field in self.kept.items()}
+
+    def write(self, values: Mapping[str, float | int]) -> None:
+        """Set the fields that `read` returns."""
+        for name, field in self.kept.items():
+            field[None] = values[name]
 
     @ti.func
     def begin_step(self):
@@ -49,6 +67,11 @@ class Clock:
     def report_rate(self, rate):
         """Take note of an inverse time step [1/s] that this step demands of the next."""
         ti.atomic_max(self.rate[None], rate)
+
+    @ti.func
+    def report_moved_out(self):
+        """Pause before the next step, for new blocks."""
+        self.moved_out[None] = 1
 
     @ti.func
     def report_fault(self, fault, p):

@@ -1,8 +1,10 @@
-"""What a verification problem reports: one measured number beside the one it should be."""
+"""What a verification problem returns: measured values, each beside the one it should be."""
 
 from dataclasses import dataclass
 from math import inf
-from typing import Protocol
+from typing import Protocol, Self
+
+from engine.verification.harness import Harness
 
 
 @dataclass(frozen=True)
@@ -11,10 +13,11 @@ class Check:
 
     Attributes:
         quantity: what is compared.
-        unit: unit of both values; of the error too, unless it is a share.
-        measured, expected: value of the run, and exact or published value.
+        unit: of both values; of the error too, unless the error is relative.
+        measured: value of the run.
+        expected: exact or published value.
         error: distance between them, in the problem's own measure.
-        allowed: largest error that passes; infinite for what is reported only.
+        allowed: largest error that passes; infinite for what is only shown.
     """
 
     quantity: str
@@ -24,28 +27,34 @@ class Check:
     error: float
     allowed: float
 
+    @classmethod
+    def absolute(cls, quantity: str, unit: str, measured: float, expected: float, allowed: float) -> Self:
+        """Return the comparison by |measured - expected|."""
+        return cls(quantity, unit, measured, expected, abs(measured - expected), allowed)
+
+    @classmethod
+    def relative(
+        cls, quantity: str, unit: str, measured: float, expected: float, allowed: float, scale: float = 0.0
+    ) -> Self:
+        """Return the comparison by |measured - expected|/|scale|; the scale is the expected value unless given."""
+        return cls(quantity, unit, measured, expected, abs(measured - expected) / abs(scale or expected), allowed)
+
     @property
     def passed(self) -> bool:
-        """Whether the error is allowed; one that is not a number never is, unless it is only reported."""
+        """Whether the error is allowed; one that is not a number never is, unless it is only shown."""
         return self.allowed == inf or self.error <= self.allowed
 
 
 class Problem(Protocol):
-    """A scene with a known answer; Taichi must have been started before it runs."""
+    """A scene with a known answer."""
 
     @property
     def name(self) -> str:
         """Name on the command line."""
 
-    def checks(self) -> list[Check]:
-        """Run the scene and compare it with the answer."""
+    def checks(self, harness: Harness) -> list[Check]:
+        """Run the scene in a harness and compare it with the answer; Taichi must have been started.
 
-
-def difference(quantity: str, unit: str, measured: float, expected: float, allowed: float) -> Check:
-    """A comparison by absolute difference."""
-    return Check(quantity, unit, measured, expected, abs(measured - expected), allowed)
-
-
-def share(quantity: str, unit: str, measured: float, expected: float, allowed: float, of: float = 0.0) -> Check:
-    """A comparison by difference as a share `of` a scale, by default of the expected value."""
-    return Check(quantity, unit, measured, expected, abs(measured - expected) / abs(of or expected), allowed)
+        Raises:
+            RunFault: a particle left the range in which the equations hold.
+        """

@@ -1,11 +1,9 @@
-"""Running a scene in memory, and reading it as its equations name things."""
+"""Running a scene in memory, and its state in the terms of its equations."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from contextvars import ContextVar
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,33 +15,58 @@ from engine.state.particles import Arrays
 
 Array = NDArray[np.float64]
 
-
-_settings: ContextVar[dict[str, Any]] = ContextVar("settings")
-_stepping: ContextVar[list[float]] = ContextVar("stepping")
-
-
-@contextmanager
-def settings(values: dict[str, Any]) -> Iterator[list[float]]:
-    """Scenes that begin inside take on these values by dotted key; yields a list of CPU times [s] spent on steps."""
-    times: list[float] = []
-    tokens = _settings.set(values), _stepping.set(times)
-    try:
-        yield times
-    finally:
-        _settings.reset(tokens[0])
-        _stepping.reset(tokens[1])
+Setting = int | float | str
+"""A value that a setting can have."""
 
 
-@contextmanager
-def timed() -> Iterator[None]:
-    """Counts the CPU time of what runs inside as spent on steps."""
-    begun = time.process_time()
-    yield
-    _stepping.get([]).append(time.process_time() - begun)
+@dataclass
+class Harness:
+    """Runs scenes at settings of one's choice and adds up what their steps cost.
+
+    Attributes:
+        settings: values that replace those of every scene, by dotted key (`numerics.cfl`); a setting of a part of the
+            physics that a scene leaves out has no effect on it.
+        cpu_time: CPU time of all steps so far [s], without compilation.
+    """
+
+    settings: Mapping[str, Setting] = field(default_factory=dict)
+    cpu_time: float = 0.0
+
+    def start(self, scene: Scene, **fields: NDArray[np.generic]) -> Simulation:
+        """Return a simulation of the scene at its start, its kernels compiled.
+
+        Args:
+            scene: what to run; the harness's settings replace its own.
+            fields: whole fields of the initial state that replace the scene's own, shape [particle_count, ...].
+        """
+        for key, value in self.settings.items():
+            scene = altered(scene, key, value)
+        simulation = Simulation(scene)
+        simulation.start(**fields)
+        simulation.advance(scene.start_time)
+        return simulation
+
+    def run_until(self, simulation: Simulation, end: float) -> "State":
+        """Advance a simulation; return its state after the first step that reaches the time `end` [s], or its own end.
+
+        Raises:
+            RunFault: a particle left the range in which the equations hold.
+        """
+        with self.timed():
+            while simulation.time < min(end, simulation.scene.end_time):
+                simulation.advance(end)
+        return State(simulation.time, simulation.particles.read())
+
+    @contextmanager
+    def timed(self) -> Iterator[None]:
+        """Add the CPU time of the enclosed steps to `cpu_time`."""
+        begun = time.process_time()
+        yield
+        self.cpu_time += time.process_time() - begun
 
 
-def altered(model: Model, key: str, value: Any) -> Model:
-    """A model with the value at a dotted key replaced; a part that is left out stays so."""
+def altered(model: Model, key: str, value: object) -> Model:
+    """Return a model with the value at a dotted key replaced, unchecked; a part that is left out stays so."""
     name, _, rest = key.partition(".")
     part = getattr(model, name)
     if rest and part is None:
@@ -51,66 +74,49 @@ def altered(model: Model, key: str, value: Any) -> Model:
     return model.model_copy(update={name: altered(part, rest, value) if rest else value})
 
 
-def begin(scene: Scene, **changes: NDArray[Any]) -> Simulation:
-    """A scene at its start, its kernels compiled, and whole fields of its state replaced by `changes`."""
-    for key, value in _settings.get({}).items():
-        scene = altered(scene, key, value)
-    simulation = Simulation(scene)
-    simulation.start(**changes)
-    simulation.advance(scene.start_time)
-    return simulation
-
-
-def follow(simulation: Simulation, until: float) -> "Moment":
-    """The state at the first step that reaches `until` [s].
-
-    Raises:
-        RunFault: a particle left the range in which the equations hold.
-    """
-    with timed():
-        while simulation.time < min(until, simulation.scene.end_time):
-            simulation.advance(until)
-    return Moment(simulation.time, simulation.particles.read())
-
-
 @dataclass(frozen=True)
-class Moment:
-    """All particles at one time [s]."""
+class State:
+    """All particles at one time.
+
+    Attributes:
+        time: simulated time [s].
+        fields: quantities of the particles by name (engine/state/particles.py), shape [particle_count, ...].
+    """
 
     time: float
-    state: Arrays
+    fields: Arrays
 
     @property
     def x(self) -> Array:
         """Positions [m], shape [particle_count, 3]."""
-        return np.asarray(self.state["x"])
+        return np.asarray(self.fields["x"])
 
     @property
     def v(self) -> Array:
         """Velocities [m/s], shape [particle_count, 3]."""
-        return np.asarray(self.state["v"])
+        return np.asarray(self.fields["v"])
 
     @property
     def speed(self) -> Array:
-        """Speeds [m/s], shape [particle_count]."""
+        """Speeds |v| [m/s], shape [particle_count]."""
         return np.asarray(np.linalg.norm(self.v, axis=1))
 
     @property
     def J(self) -> Array:
-        """det F [-], shape [particle_count]."""
-        return np.asarray(1.0 + self.state["j"])
+        """det F = rho0/rho [-], shape [particle_count]."""
+        return np.asarray(1.0 + self.fields["j"])
 
     @property
     def P(self) -> Array:
-        """Mean stress [Pa], positive in compression, shape [particle_count]."""
-        return np.asarray(-self.state["tau"][:, :3].mean(axis=1) / self.J)
+        """Mean stress -tr(tau)/(3 J) [Pa], positive in compression, shape [particle_count]."""
+        return np.asarray(-self.fields["tau"][:, :3].mean(axis=1) / self.J)
 
     @property
     def damage(self) -> Array:
         """Damage [-], shape [particle_count]."""
-        return np.asarray(self.state["damage_root"] ** 3)
+        return np.asarray(self.fields["damage_root"] ** 3)
 
 
 def fitted_order(sizes: list[float], errors: list[float]) -> float:
-    """Exponent q of the power law error ~ size^q that fits best."""
+    """Return the exponent q of the power law error ~ size^q that fits best, by least squares of logarithms."""
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])

@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 def in_own_process(
     precision: Precision, function: Callable[Given, Result], *arguments: Given.args, **named: Given.kwargs
 ) -> Result:
-    """What a function returns in a new process that computes in a precision.
+    """Run a function in a new process of a precision; return what it returns.
 
     Raises:
         BrokenProcessPool: the process died.

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from engine.device.backend import mat3, vec3, vec4
 from engine.device.tensors import unpack
+from engine.mpm.apic import affine_velocity
 from engine.mpm.spline import spline_weights
-from engine.mpm.transfer import affine_velocity
 from engine.state.particles import Particles
 
 MARGIN = 2
@@ -57,7 +57,7 @@ class DenseTransfer:
             base, f = self.locate(p)
             weights = spline_weights(f)
             mass = self.particles.mass[p]
-            volume = mass / self.constitution.table[self.particles.body[p]].rho0
+            volume = mass / self.constitution.rho0(p)
             stress = (4.0 * dt * volume / (self.dx * self.dx)) * unpack(self.particles.tau[p])
             affine = mass * self.particles.C[p] - stress
             momentum = mass * (self.particles.v[p] + dt * self.gravity.at(p))

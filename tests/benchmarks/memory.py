@@ -1,6 +1,6 @@
 """Memory of a simulation: what its particles and grid occupy, and what a step moves at least."""
 
-from engine.mpm.transfer import COPY
+from engine.mpm.stencil import COPY
 from engine.profile.parts import allocated_bytes, entry_bytes, own_fields
 from engine.simulation.simulation import Simulation
 
@@ -15,11 +15,11 @@ GRID_PASSES = 4
 
 def bytes_per_step(simulation: Simulation) -> float:
     """Least traffic of one step with memory, per particle, when nothing stays in cache from kernel to kernel."""
-    particles, transfer = simulation.particles, simulation.transfer
+    particles, stencil = simulation.particles, simulation.stencil
     names = [name for name in (*PARTICLES_TO_GRID, *GRID_TO_PARTICLES, *UPDATED) if name in particles.allocated]
     state = sum(entry_bytes(getattr(particles, name)) for name in names)
-    copies = int(transfer.block_count[None]) * COPY
-    return state + GRID_PASSES * copies * entry_bytes(transfer.nodes) / particles.count
+    copies = int(stencil.block_count[None]) * COPY
+    return state + GRID_PASSES * copies * entry_bytes(stencil.nodes) / particles.count
 
 
 def allocated(simulation: Simulation) -> dict[str, float]:
@@ -27,13 +27,13 @@ def allocated(simulation: Simulation) -> dict[str, float]:
 
     Fields have room for a power of two of entries, so what is allocated per particle jumps by two.
     """
-    particles, transfer, fracture = simulation.particles, simulation.transfer, simulation.constitution.damage.fracture
+    particles, stencil, fracture = simulation.particles, simulation.stencil, simulation.constitution.damage.fracture
     count = particles.count
-    per_particle = [*own_fields(particles).values(), transfer.owner]
+    per_particle = [*own_fields(particles).values(), stencil.owner]
     flaws = [fracture.first, fracture.strain]
     used = sum(map(entry_bytes, [*per_particle, fracture.first])) * count
     used += int(fracture.first[count]) * entry_bytes(fracture.strain)
-    grid = [field for name, field in own_fields(transfer).items() if name != "owner"]
+    grid = [field for name, field in own_fields(stencil).items() if name != "owner"]
     return {
         "state": sum(map(allocated_bytes, [*per_particle, *flaws])) / count,
         "state_used": used / count,

@@ -27,7 +27,7 @@ def measure(particles: int, threads: int, contact: float, steps: int) -> dict[st
         "precision": str(Real),
         "time": simulation.time,
         "dt": float(simulation.clock.dt[None]),
-        "blocks": int(simulation.transfer.block_count[None]),
+        "blocks": int(simulation.stencil.block_count[None]),
         "damaged": float((simulation.particles.read("damage_root")["damage_root"] >= 1.0).mean()),
         "steps": steps,
         "step": total(watches).summary(),

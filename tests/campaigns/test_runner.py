@@ -1,12 +1,20 @@
 """Runs of small campaigns with the fake engine."""
 
 import json
+import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from dask.distributed import LocalCluster
+
+from campaigns.directory import CampaignDirectory
+from campaigns.expansion import expand
+from campaigns.runner import Run
+from campaigns.study import Study
 
 Tree = Callable[[Path], dict[str, bytes]]
 
@@ -216,3 +224,40 @@ def test_slurm_without_jobqueue(command, write_study, monkeypatch, runs):
     assert result.code == 2
     assert "pip install" in result.err
     assert not runs.exists()
+
+
+class LateCluster:
+    """A client whose workers run the given numbers of engines, one after the other, each time they are signalled."""
+
+    def __init__(self, alive: list[int]) -> None:
+        self.alive = alive
+        self.submitted: list[Path] = []
+        self.signals: list[tuple[list[Path], int]] = []
+
+    def submit(self, function: Any, path: Path, *arguments: Any, **options: Any) -> Any:
+        self.submitted.append(path)
+        return SimpleNamespace(done=lambda: False)
+
+    def cancel(self, futures: list[Any]) -> None:
+        """Do nothing: a worker that has begun a job goes on."""
+
+    def run(self, function: Any, paths: list[Path], number: int) -> dict[str, int]:
+        self.signals.append((paths, number))
+        return {"worker": self.alive.pop(0) if self.alive else 0}
+
+
+def test_a_stopped_campaign_ends_also_an_engine_that_a_worker_begins_late(runs):
+    """Two engines end at the first signal; a third one begins when none has been left."""
+    campaign = expand(Study(name="small", axes={"velocity": [100, 200, 300], "angle": [5]}), "test")
+    client = LateCluster([2, 0, 1, 0])
+
+    def ctrl_c(jobs: Any) -> None:
+        raise KeyboardInterrupt
+
+    run = Run(CampaignDirectory(runs / "small"), campaign, client, threads=1, arch="cpu", retry_failed=False)
+    with pytest.raises(KeyboardInterrupt):
+        run.watch(ctrl_c)
+    assert not client.alive, "watched until no engine was left, the late one included"
+    assert len(client.submitted) == 3
+    assert client.signals[2] == (client.submitted, signal.SIGTERM)
+    assert signal.SIGKILL not in [number for _, number in client.signals], "none was killed that could end in order"

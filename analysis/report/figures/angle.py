@@ -2,18 +2,19 @@
 
 from collections.abc import Iterator
 from itertools import cycle
-from typing import Any
+from typing import TypedDict
 
 import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from analysis.report.figures.style import GREY, MARKERS, Directories, nothing_done, shades, styled
-from analysis.results.tables import cells, series
-
-Look = dict[str, Any]
+from analysis.remnant.outcome import Outcomes
+from analysis.report.figures.style import GREY, MARKERS, Colour, nothing_done, shades, styled
+from analysis.results.tables import points, series
+from engine.job.directory import JobState
 
 NAME = "shape_vs_angle"
 CAPTION = "Axis ratios of the largest remnant against impact angle."
@@ -23,13 +24,21 @@ DASHES = ("-", "--", ":", "-.")
 PANELS = {"b_over_a": "$b/a$", "c_over_a": "$c/a$"}
 
 
+class Look(TypedDict):
+    """How a line is drawn."""
+
+    color: Colour
+    marker: str
+    linestyle: str
+
+
 @styled
-def draw(results: xr.Dataset, directories: Directories) -> Figure:
+def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
     """b/a and c/a against angle, thin remnants hollow.
 
     Bars are the errors of a study with error bars, else, over an axis of seeds, the standard deviation of one run.
     """
-    if not (results["state"] == "done").any():
+    if not (results["state"] == JobState.DONE).any():
         return nothing_done()
     figure = Figure(figsize=(7.8, 3.5), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
@@ -50,8 +59,8 @@ def draw(results: xr.Dataset, directories: Directories) -> Figure:
 
 
 def _lines(results: xr.Dataset) -> Iterator[tuple[str, tuple[Look, pd.DataFrame]]]:
-    """Label, look and cells of each line: colour and marker tell the velocity, or, where there is one, the series."""
-    groups, velocities = list(series(results)), cells(results)["velocity"].dropna().unique()
+    """Label, look and points of each line: colour and marker tell the velocity, or, where there is one, the series."""
+    groups, velocities = list(series(results)), points(results)["velocity"].dropna().unique()
     by_velocity = len(velocities) > 1
     colours = shades(velocities if by_velocity else range(len(groups)))
     markers = dict(zip(colours, cycle(MARKERS), strict=False))
@@ -59,15 +68,15 @@ def _lines(results: xr.Dataset) -> Iterator[tuple[str, tuple[Look, pd.DataFrame]
         for speed, rows in table.groupby("velocity"):
             velocity = float(str(speed))
             level = velocity if by_velocity else float(number)
-            look = {"color": colours[level], "marker": markers[level], "linestyle": dashes}
+            look = Look(color=colours[level], marker=markers[level], linestyle=dashes)
             yield f"{velocity:g} m/s" + (f", {title}" if title else ""), (look, rows)
 
 
-def _line(axes: Any, rows: pd.DataFrame, name: str, look: Look) -> None:
+def _line(axes: Axes, rows: pd.DataFrame, name: str, look: Look) -> None:
     spread = (f"{name}_error", "mean") if f"{name}_error" in rows else (name, "std")
     found = rows.groupby("angle").agg(mean=(name, "mean"), spread=spread, thin=("largest_thin", "max"))
     bars = found["spread"].fillna(0.0)
     axes.errorbar(found.index, found["mean"], bars, capsize=2.5, elinewidth=0.9, markeredgewidth=1.2, **look)
     thin = found[found["thin"] > 0.0]
-    hollow = look | {"linestyle": "none", "markerfacecolor": "white", "zorder": 5}
-    axes.plot(thin.index, thin["mean"], markeredgewidth=1.2, **hollow)
+    hollow = Look(color=look["color"], marker=look["marker"], linestyle="none")
+    axes.plot(thin.index, thin["mean"], markeredgewidth=1.2, markerfacecolor="white", zorder=5, **hollow)

@@ -1,17 +1,18 @@
-"""The largest remnant of every cell, all at one scale."""
-
-from typing import Any
+"""The largest remnant of every point, all at one scale."""
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
 
-from analysis.report.figures.style import GREY, Directories, nothing_done, styled
+from analysis.remnant.outcome import Outcomes
+from analysis.report.figures.style import GREY, nothing_done, styled
 from analysis.report.figures.views import Frame, Views, frame_around, views_of
 from analysis.results.tables import series
-from engine.job.directory import JobDirectory
+from engine.job.directory import JobState
 
 NAME = "remnants"
 CAPTION = "The largest remnant of every collision, along its shortest axis and edge-on."
@@ -25,29 +26,29 @@ KEY = (
 )
 
 WRAP = 4
-"""Pictures in a row when the cells are no full grid of velocity and angle."""
+"""Pictures in a row when the points are no full grid of velocity and angle."""
 
 
 @styled
-def draw(results: xr.Dataset, directories: Directories) -> Figure:
-    """One picture a cell at a common scale; of several seeds the first.
+def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
+    """One picture a point at a common scale; of several seeds the first.
 
     Args:
         results: the results of a campaign.
-        directories: job directory of each job id.
+        outcomes: of its jobs, by job id.
     """
     groups = [rows.assign(series=title).drop_duplicates(["velocity", "angle"]) for title, rows in series(results)]
     shown = pd.concat(groups)
-    done = shown.loc[shown["state"] == "done", "job"]
+    done = shown.loc[shown["state"] == JobState.DONE, "job"]
     if done.empty:
         return nothing_done()
-    views = dict(zip(done, views_of([JobDirectory(directories[job]).final for job in done]), strict=True))
+    views = dict(zip(done, views_of(outcomes[job].read_remnant() for job in done), strict=True))
     frame = frame_around(list(views.values()))
     columns = _columns(shown)
     width = NARROW if columns > WRAP and not shown["series"].any() else WIDE
     figure, panels = _grid(len(shown), columns, width, frame)
-    for axes, (_, cell) in zip(panels, shown.iterrows(), strict=False):
-        _panel(axes, cell, views.get(cell["job"]), frame)
+    for axes, (_, point) in zip(panels, shown.iterrows(), strict=False):
+        _panel(axes, point, views.get(point["job"]), frame)
     _scale_bar(panels[-columns], 2.0 * frame.width)
     return figure
 
@@ -59,8 +60,8 @@ def _columns(shown: pd.DataFrame) -> int:
     return angles if full and angles > 1 else min(WRAP, len(shown))
 
 
-def _grid(count: int, columns: int, width: float, frame: Frame) -> tuple[Figure, Any]:
-    """A figure of `count` panels around the frame, each `width` inches wide, with room for captions."""
+def _grid(count: int, columns: int, width: float, frame: Frame) -> tuple[Figure, NDArray[np.object_]]:
+    """A figure of panels `width` inches wide with room for captions, and its axes, shape [at least count]."""
     rows = -(-count // columns)
     height = width * (frame.flat + frame.edge) / frame.width
     size = (columns * width + (columns - 1) * GAP, rows * height + (rows - 1) * CAPTION_HEIGHT)
@@ -72,35 +73,35 @@ def _grid(count: int, columns: int, width: float, frame: Frame) -> tuple[Figure,
     return figure, panels.ravel()
 
 
-def _panel(axes: Any, cell: pd.Series, views: Views | None, frame: Frame) -> None:
-    axes.set_title(_caption(cell), fontsize=7.5, pad=3)
+def _panel(axes: Axes, point: pd.Series, views: Views | None, frame: Frame) -> None:
+    axes.set_title(_caption(point), fontsize=7.5, pad=3)
     if views is None:
-        _missing(axes, cell["state"])
+        _missing(axes, point["state"])
         return
     for found, centre in ((views.flat, 0.0), (views.edge, -frame.flat - frame.edge)):
         left, right, bottom, top = found.extent
-        place = (left, right, bottom + centre, top + centre)
-        axes.imshow(found.pixels, extent=place, origin="lower", interpolation="hanning")
+        extent = (left, right, bottom + centre, top + centre)
+        axes.imshow(found.pixels, extent=extent, origin="lower", interpolation="hanning")
     axes.set(xlim=(-frame.width, frame.width), ylim=(-frame.flat - 2.0 * frame.edge, frame.flat), aspect="auto")
 
 
-def _missing(axes: Any, state: str) -> None:
-    whole = {"transform": axes.transAxes}
-    axes.add_patch(Rectangle((0, 0), 1, 1, hatch="////", facecolor="white", edgecolor="#dddddd", **whole))
-    axes.text(0.5, 0.5, state, ha="center", va="center", color=GREY, backgroundcolor="white", **whole)
+def _missing(axes: Axes, state: str) -> None:
+    whole = axes.transAxes
+    axes.add_patch(Rectangle((0, 0), 1, 1, hatch="////", facecolor="white", edgecolor="#dddddd", transform=whole))
+    axes.text(0.5, 0.5, state, ha="center", va="center", color=GREY, backgroundcolor="white", transform=whole)
 
 
-def _caption(cell: pd.Series) -> str:
-    place = f"{cell['velocity']:g} m/s, {cell['angle']:g}°" + (f", {cell['series']}" if cell["series"] else "")
-    if cell["state"] != "done":
-        return place
-    return f"{place}\n$M$ {cell['mass_ratio']:.2f}   $b/a$ {cell['b_over_a']:.2f}   $c/a$ {cell['c_over_a']:.2f}"
+def _caption(point: pd.Series) -> str:
+    text = f"{point['velocity']:g} m/s, {point['angle']:g}°" + (f", {point['series']}" if point["series"] else "")
+    if point["state"] != JobState.DONE:
+        return text
+    return f"{text}\n$M$ {point['mass_ratio']:.2f}   $b/a$ {point['b_over_a']:.2f}   $c/a$ {point['c_over_a']:.2f}"
 
 
-def _scale_bar(axes: Any, width: float) -> None:
+def _scale_bar(axes: Axes, width: float) -> None:
     """A bar of a round length below a panel of the given width [m]."""
     power = 10.0 ** np.floor(np.log10(0.3 * width))
     length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= 0.3 * width)
-    bar = {"transform": axes.transAxes, "clip_on": False}
-    axes.plot([0.0, length / width], [-0.02, -0.02], color="black", linewidth=2.0, solid_capstyle="butt", **bar)
-    axes.text(0.0, -0.06, f"{length / 1000.0:g} km. {KEY}", va="top", fontsize=7.5, **bar)
+    (bar,) = axes.plot([0.0, length / width], [-0.02, -0.02], color="black", linewidth=2.0, solid_capstyle="butt")
+    bar.set(transform=axes.transAxes, clip_on=False)
+    axes.text(0.0, -0.06, f"{length / 1000.0:g} km. {KEY}", va="top", fontsize=7.5, transform=axes.transAxes)

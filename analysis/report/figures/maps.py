@@ -1,17 +1,18 @@
 """Outcomes over velocity and angle as heat maps."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib import colormaps
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from analysis.report.figures.style import GREY, Directories, styled
+from analysis.remnant.outcome import Outcomes
+from analysis.report.figures.style import GREY, styled
 from analysis.results.tables import series
+from engine.job.directory import JobState
 
 NAME = "maps"
 CAPTION = "Mass and axis ratios of the largest remnant over velocity and angle."
@@ -25,8 +26,8 @@ PANELS = {
 
 
 @styled
-def draw(results: xr.Dataset, directories: Directories) -> Figure:
-    """M_lr/M_target, b/a and c/a, one row of maps per series; means over seeds, missing cells with their state."""
+def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
+    """M_lr/M_target, b/a and c/a, one row of maps per series; means over seeds, missing points with their state."""
     groups = list(series(results))
     tallest, widest = (max(rows[name].nunique() for _, rows in groups) for name in ("velocity", "angle"))
     size = (3 * max(2.4, 0.42 * widest + 1.0), len(groups) * max(2.2, 0.36 * tallest + 1.0))
@@ -42,7 +43,7 @@ def draw(results: xr.Dataset, directories: Directories) -> Figure:
     return figure
 
 
-def _map(axes: Any, table: pd.DataFrame, name: str, highest: float) -> None:
+def _map(axes: Axes, table: pd.DataFrame, name: str, highest: float) -> None:
     values = table.pivot_table(index="velocity", columns="angle", values=name, aggfunc="mean", dropna=False)
     states = table.pivot_table(index="velocity", columns="angle", values="state", aggfunc=_least_done, dropna=False)
     states = states.reindex(index=values.index, columns=values.columns)
@@ -63,8 +64,8 @@ def _map(axes: Any, table: pd.DataFrame, name: str, highest: float) -> None:
     axes.spines[:].set_visible(False)
 
 
-def _missing(axes: Any, column: int, row: int, state: object) -> None:
-    """A hatched cell with the state of its job; an empty one where the study has no job."""
+def _missing(axes: Axes, column: int, row: int, state: object) -> None:
+    """A hatched point with the state of its job; an empty one where the study has no job."""
     if not isinstance(state, str):
         return
     box = Rectangle(
@@ -76,5 +77,5 @@ def _missing(axes: Any, column: int, row: int, state: object) -> None:
 
 
 def _least_done(states: pd.Series) -> str:
-    """The first state that is not done, since a cell without a number has none done."""
-    return next((str(state) for state in states if state != "done"), "done")
+    """The first state that is not done, since a point without a number has none done."""
+    return next((str(state) for state in states if state != JobState.DONE), JobState.DONE)

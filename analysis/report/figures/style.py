@@ -3,20 +3,18 @@
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
-from typing import Any, ParamSpec, Protocol
+from typing import ParamSpec, Protocol
 
 import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from analysis.remnant.outcome import Outcomes
 from engine.job.storage import write_atomically
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#666666"
 """Okabe & Ito (2008)."""
-
-Directories = dict[str, Path]
-"""Job directory of each job id."""
 
 
 class Drawing(Protocol):
@@ -30,12 +28,12 @@ class Drawing(Protocol):
     NAME: str
     CAPTION: str
 
-    def draw(self, results: xr.Dataset, directories: Directories) -> Figure:
+    def draw(self, results: xr.Dataset, outcomes: Outcomes) -> Figure:
         """Draw the figure.
 
         Args:
             results: the results of a campaign.
-            directories: job directory of each job id.
+            outcomes: of its jobs, by job id.
         """
 
 
@@ -64,6 +62,8 @@ STYLE = {
 """Settings of matplotlib in force while a figure is drawn and written, and only then."""
 
 Arguments = ParamSpec("Arguments")
+Colour = tuple[float, float, float, float]
+"""Red, green, blue and opacity, 0 to 1."""
 
 
 def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
@@ -77,15 +77,16 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
     return drawn
 
 
-def shades(levels: Iterable[float]) -> dict[float, Any]:
+def shades(levels: Iterable[float]) -> dict[float, Colour]:
     """A colour for each level, dark for low and light for high."""
     levels = sorted({float(level) for level in levels})
-    return dict(zip(levels, matplotlib.colormaps["viridis"](np.linspace(0.0, 0.88, len(levels))), strict=True))
+    colours = (matplotlib.colormaps["viridis"](position) for position in np.linspace(0.0, 0.88, len(levels)))
+    return dict(zip(levels, colours, strict=True))
 
 
 @styled
 def nothing_done() -> Figure:
-    """A figure that says why it shows nothing."""
+    """A figure that shows only why it is empty."""
     figure = Figure(figsize=(6.0, 2.0))
     axes = figure.subplots()
     axes.set(xticks=[], yticks=[])

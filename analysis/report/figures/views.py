@@ -1,13 +1,12 @@
 """The largest remnants of jobs in their principal axes, as pictures of one scale."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from analysis.remnant.ellipsoid import ellipsoid_of
-from analysis.remnant.fragments import largest_clump
-from analysis.remnant.particles import Particles, read_particles
+from analysis.remnant.particles import Particles
 from analysis.report.figures.surface import Picture, picture
 
 PIXELS = 720
@@ -19,7 +18,12 @@ FINEST = 12.0
 
 @dataclass(frozen=True)
 class Views:
-    """A remnant seen along its shortest axis, and edge-on along its intermediate one; the longest axis to the right."""
+    """Pictures of a remnant, its longest axis to the right.
+
+    Attributes:
+        flat: seen along the shortest axis.
+        edge: seen along the intermediate axis.
+    """
 
     flat: Picture
     edge: Picture
@@ -27,23 +31,24 @@ class Views:
 
 @dataclass(frozen=True)
 class Frame:
-    """What holds any of the pictures: half the width, and half the height of each view [m]."""
+    """Size of a panel around any of the pictures.
+
+    Attributes:
+        width: half of its width [m].
+        flat, edge: half of the height of each view [m].
+    """
 
     width: float
     flat: float
     edge: float
 
 
-def views_of(finals: list[Path]) -> list[Views]:
-    """Both views of the largest remnant in each particle file, all with the same pixel size.
-
-    Raises:
-        JobError, RunFault: as `read_particles`.
-    """
-    remnants = [_aligned(largest_clump(read_particles(path))) for path in finals]
-    longest = max(float(np.ptp(remnant.position[:, 0])) + remnant.spacing for remnant in remnants)
-    finest = min(remnant.spacing for remnant in remnants) / FINEST
-    return [_views(remnant, max(longest / PIXELS, finest)) for remnant in remnants]
+def views_of(remnants: Iterable[Particles]) -> list[Views]:
+    """Both views of each remnant, all with the same pixel size."""
+    aligned = [_aligned(remnant) for remnant in remnants]
+    longest = max(float(np.ptp(remnant.position[:, 0])) + remnant.spacing for remnant in aligned)
+    finest = min(remnant.spacing for remnant in aligned) / FINEST
+    return [_views(remnant, max(longest / PIXELS, finest)) for remnant in aligned]
 
 
 def frame_around(views: list[Views]) -> Frame:

@@ -1,7 +1,5 @@
 """The figure of error against CPU time."""
 
-from pathlib import Path
-
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,8 +11,12 @@ from engine.verification.accuracy.settings import TRADEOFFS
 COLUMNS = 4
 
 
-def draw(runs: pd.DataFrame, path: Path) -> None:
-    """One panel a scene, one line a knob; a dashed line joins the runs that no other beats in both."""
+def draw(runs: pd.DataFrame) -> Figure:
+    """Draw a panel for each scene, with one line a setting and the Pareto front dashed.
+
+    Args:
+        runs: one row a run, with `scene`, `setting`, `value`, `error` and `cpu_time` [s].
+    """
     scenes = [name for name in TRADEOFFS if (runs["scene"] == name).any()]
     rows = -(-len(scenes) // COLUMNS)
     figure = Figure(figsize=(3.2 * COLUMNS, 2.9 * rows), layout="constrained")
@@ -23,9 +25,9 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
         _panel(axes, runs[runs["scene"] == name], name)
     for axes in panels.flat[len(scenes) :]:
         axes.set_axis_off()
-    knobs = {line.get_label(): line for axes in panels.flat for line in axes.get_lines()}
-    figure.legend(knobs.values(), knobs.keys(), loc="outside lower center", ncols=COLUMNS)
-    figure.savefig(path, dpi=80)
+    lines = {line.get_label(): line for axes in panels.flat for line in axes.get_lines()}
+    figure.legend(lines.values(), lines.keys(), loc="outside lower center", ncols=COLUMNS)
+    return figure
 
 
 def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:
@@ -33,10 +35,10 @@ def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:
     label_decades(axes.xaxis, runs["cpu_time"])
     label_decades(axes.yaxis, runs["error"])
     axes.tick_params(labelsize=7)
-    for knob, group in runs.groupby("knob", sort=True):
+    for setting, group in runs.groupby("setting", sort=True):
         ordered = group.assign(number=pd.to_numeric(group["value"], errors="coerce")).sort_values("number")
-        label = str(knob) if "." in str(knob) else "particles, cells or steps"
-        axes.plot(ordered["cpu_time"], ordered["error"], ".-", color=_color(str(knob)), label=label)
+        label = str(setting) if "." in str(setting) else "particles, cells or steps"
+        axes.plot(ordered["cpu_time"], ordered["error"], ".-", color=_color(str(setting)), label=label)
     front = pareto(runs)
     axes.plot(front["cpu_time"], front["error"], "--", color="0.4", lw=2.5, zorder=0, label="no run beats these")
     axes.set_title(name, fontsize=9)
@@ -44,7 +46,7 @@ def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:
     axes.set_ylabel(TRADEOFFS[name].quantity, fontsize=7)
 
 
-def _color(knob: str) -> str:
-    """The same for every scene; all resolutions share one."""
-    names = sorted({key for tradeoff in TRADEOFFS.values() for key in tradeoff.knobs})
-    return f"C{names.index(knob) + 1}" if knob in names else "C0"
+def _color(setting: str) -> str:
+    """Color of a setting, the same in every panel; all resolutions have the same."""
+    names = sorted({key for tradeoff in TRADEOFFS.values() for key in tradeoff.settings})
+    return f"C{names.index(setting) + 1}" if setting in names else "C0"

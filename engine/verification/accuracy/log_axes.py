@@ -1,4 +1,4 @@
-"""Logarithmic axes that can be read."""
+"""Labels of logarithmic axes."""
 
 from collections.abc import Iterable
 
@@ -11,7 +11,7 @@ def label_decades(axis: Axis, values: Iterable[float]) -> None:
 
     Args:
         axis: a logarithmic axis.
-        values: what is drawn along it.
+        values: coordinates of what is drawn, along this axis.
     """
     shown = list(values)
     several = max(shown) > 1e3 * min(shown)

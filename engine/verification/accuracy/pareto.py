@@ -1,11 +1,11 @@
-"""Runs that no other beats in both error and CPU time."""
+"""The Pareto front: runs that no other beats in both error and CPU time."""
 
 import numpy as np
 import pandas as pd
 
 
 def pareto(runs: pd.DataFrame) -> pd.DataFrame:
-    """The runs that are more accurate than every faster one, fastest first.
+    """Return the runs that are more accurate than every faster one, fastest first.
 
     Args:
         runs: any table with the columns `cpu_time` and `error`.

@@ -1,10 +1,10 @@
-"""Error against CPU time: every verification scene at every value of every knob."""
+"""Error against CPU time: every verification scene at every value of every setting."""
 
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 import pandas as pd
@@ -15,10 +15,10 @@ from engine.device import backend
 from engine.device.options import Precision
 from engine.job.storage import write_dataset
 from engine.verification.accuracy.settings import TRADEOFFS
-from engine.verification.harness import fitted_order, settings
+from engine.verification.harness import Harness, Setting, fitted_order
 from engine.verification.processes import in_own_process
 
-KEYS = ["scene", "knob", "value"]
+KEYS = ["scene", "setting", "value"]
 
 ATTRIBUTES = {
     "error": {"long_name": "error against the exact solution or published values", "units": "1"},
@@ -28,38 +28,46 @@ ATTRIBUTES = {
 
 @dataclass(frozen=True)
 class Run:
-    """One scene with one knob turned.
+    """One scene with one setting varied.
 
     Attributes:
         scene: name of the verification scene.
-        knob: what is turned: `particles`, `cells` or `steps`, or a dotted key of the scene.
-        value: where it is turned to, as text.
-        error: see `Tradeoff.quantity`.
-        cpu_time: of all time steps [s], kernels compiled before.
+        setting: what is varied: `particles`, `cells` or `steps`, or a dotted key of the scene.
+        value: its value, as text.
+        error: that of `Tradeoff.quantity`.
+        cpu_time: of all time steps [s], without compilation.
     """
 
     scene: str
-    knob: str
+    setting: str
     value: str
     error: float
     cpu_time: float
 
 
-def measure(scene: str, knob: str, value: Any) -> Run:
-    """Run one scene in this process, which must have started nothing else."""
+def measure(scene: str, setting: str, value: Setting) -> Run:
+    """Run one scene with one setting varied; this process must not have started Taichi before."""
     backend.start(threads=1)
     tradeoff = TRADEOFFS[scene]
-    turned = knob == tradeoff.resolution
-    with settings({} if turned else {knob: value}) as times:
-        error = tradeoff.error(value if turned else tradeoff.values[0])
-    return Run(scene, knob, str(value), error, sum(times))
+    if setting == tradeoff.resolution:
+        harness, resolution = Harness(), int(value)
+    else:
+        harness, resolution = Harness({setting: value}), tradeoff.resolutions[0]
+    error = tradeoff.error(harness, resolution)
+    return Run(scene, setting, str(value), error, harness.cpu_time)
 
 
 def sweep(scenes: Iterable[str], path: Path, workers: int) -> Iterator[Run]:
-    """All runs that the file at `path` does not hold yet, each in a process of its own; the file grows with each."""
+    """Do all runs that a file lacks, each in a process of its own; yield each as it ends.
+
+    Args:
+        scenes: names of verification scenes.
+        path: the file, written anew after each run.
+        workers: runs at the same time.
+    """
     done = read(path)
     known = set() if done.empty else set(done[KEYS].itertuples(index=False, name=None))
-    wanted = [(scene, knob, value) for scene in scenes for knob, value in TRADEOFFS[scene].runs]
+    wanted = [(scene, *run) for scene in scenes for run in TRADEOFFS[scene].runs]
     missing = [run for run in wanted if (*run[:2], str(run[2])) not in known]
     for run in _measure_all(missing, workers):
         done = pd.concat([done, pd.DataFrame([asdict(run)])], ignore_index=True)
@@ -67,21 +75,25 @@ def sweep(scenes: Iterable[str], path: Path, workers: int) -> Iterator[Run]:
         yield run
 
 
-def _measure_all(runs: list[tuple[str, str, Any]], workers: int) -> Iterator[Run]:
-    """Runs as they end, so many at the same time."""
+def _measure_all(runs: list[tuple[str, str, Setting]], workers: int) -> Iterator[Run]:
+    """The runs as they end."""
     with ThreadPoolExecutor(workers) as threads:
-        for job in as_completed([threads.submit(in_own_process, _precision(run), measure, *run) for run in runs]):
+        for job in as_completed([threads.submit(_measure_apart, run) for run in runs]):
             yield job.result()
 
 
-def _precision(run: tuple[str, str, Any]) -> Precision:
-    """What a run computes in, which is the knob of some."""
-    _, knob, value = run
-    return cast(Precision, value) if knob == "numerics.precision" else "f64"
+def _measure_apart(run: tuple[str, str, Setting]) -> Run:
+    return in_own_process(_precision(run), measure, *run)
+
+
+def _precision(run: tuple[str, str, Setting]) -> Precision:
+    """The precision of a run, which is the setting that some vary."""
+    _, setting, value = run
+    return cast(Precision, value) if setting == "numerics.precision" else "f64"
 
 
 def read(path: Path) -> pd.DataFrame:
-    """The runs in a file, none if there is no such file or it was made by other physics."""
+    """Return the runs in a file; none if there is no such file or another version of the physics made it."""
     empty = pd.DataFrame(columns=[*KEYS, "error", "cpu_time"])
     if not path.is_file():
         return empty
@@ -91,7 +103,7 @@ def read(path: Path) -> pd.DataFrame:
 
 
 def write(path: Path, runs: pd.DataFrame) -> None:
-    """Runs as a data set with the dimension `run`."""
+    """Write runs as a netCDF data set with the dimension `run`."""
     dataset = xr.Dataset.from_dataframe(runs.rename_axis("run"))
     for name, attributes in ATTRIBUTES.items():
         dataset[name].attrs = attributes
@@ -100,11 +112,11 @@ def write(path: Path, runs: pd.DataFrame) -> None:
 
 
 def orders(runs: pd.DataFrame) -> pd.DataFrame:
-    """Exponent q of error ~ value^q for resolutions and time steps, by scene and knob."""
+    """Return the exponent q of error ~ dx^q or dt^q for resolutions and time steps, by scene and setting."""
     rows = []
-    for (scene, knob), group in runs.groupby(["scene", "knob"], sort=False):
-        if knob in ("particles", "cells", "steps", "numerics.cfl") and len(group) > 1:
-            sizes = np.asarray(group["value"], dtype=float) ** (-1.0 / 3.0 if knob == "particles" else 1.0)
-            sign = -1.0 if knob in ("cells", "steps") else 1.0
-            rows.append((scene, knob, sign * fitted_order(list(sizes), list(group["error"]))))
-    return pd.DataFrame(rows, columns=["scene", "knob", "order in dx or dt"])
+    for (scene, setting), group in runs.groupby(["scene", "setting"], sort=False):
+        if setting in ("particles", "cells", "steps", "numerics.cfl") and len(group) > 1:
+            sizes = np.asarray(group["value"], dtype=float) ** (-1.0 / 3.0 if setting == "particles" else 1.0)
+            sign = -1.0 if setting in ("cells", "steps") else 1.0
+            rows.append((scene, setting, sign * fitted_order(list(sizes), list(group["error"]))))
+    return pd.DataFrame(rows, columns=["scene", "setting", "order in dx or dt"])

@@ -8,8 +8,8 @@ import numpy as np
 
 from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene, Wall
-from engine.verification.check import Check, difference
-from engine.verification.harness import Array, Moment, begin, follow
+from engine.verification.check import Check
+from engine.verification.harness import Array, Harness, State
 from engine.verification.problems.materials import elastic
 
 DATA = Path(__file__).parents[1] / "data"
@@ -24,18 +24,20 @@ REST = 8.0
 
 @dataclass(frozen=True)
 class Cliff:
-    """A column of rubble between a smooth wall and a rough floor, let go; periodic across.
+    """A column of rubble between a smooth wall and a rough floor collapses; periodic across.
 
     Attributes:
         cells: cells along the initial width; 2 cells x aspect is whole.
         stiffness: c_l in units of sqrt(g H0).
         aspect: initial height over width; the published profiles are those of 3.2.
+        cfl: Courant number [-].
     """
 
     name = "cliff"
     cells: int = 10
     stiffness: float = 20.0
     aspect: float = 3.2
+    cfl: float = 0.5
 
     @property
     def height(self) -> float:
@@ -49,7 +51,7 @@ class Cliff:
 
     @property
     def scene(self) -> Scene:
-        """Four particles a cell in the plane of the flow; wall and floor hold half a cell of it."""
+        """The column with four particles a cell in the plane of the flow; half a cell of it lies in wall and floor."""
         dx = WIDTH / self.cells
         shear = DENSITY * self.stiffness**2 * GRAVITY * self.height / 3.0
         body = Box(
@@ -65,27 +67,28 @@ class Cliff:
             period=(None, 4.0 * dx, None),
             end_time=REST * self.fall_time,
             physics=Physics(fracture=None, gravity=None, uniform_gravity=(0.0, 0.0, -GRAVITY), walls=walls),
-            numerics=Numerics(particles_per_cell=4.0),
+            numerics=Numerics(particles_per_cell=4.0, cfl=self.cfl),
         )
 
-    def checks(self) -> list[Check]:
-        """Height and front while it falls and at rest, against the experiments and Jutzi's SPH.
+    def checks(self, harness: Harness) -> list[Check]:
+        """Compare height and front, while it falls and at rest, with the experiments and Jutzi's SPH.
 
         Only the heights at rest can fail: fronts are single grains, and the codes and the experiments disagree at tau.
         """
-        moments = self.run()
-        motion = float(np.sqrt(np.mean(moments["final"].speed ** 2)) / np.sqrt(GRAVITY * self.height))
-        checks = [check for when, moment in moments.items() for check in self._compare(when, moment)]
-        return [*checks, difference("speed at rest, over sqrt(g H0)", "-", motion, 0.0, inf)]
+        states = self.run(harness)
+        motion = float(np.sqrt(np.mean(states["final"].speed ** 2)) / np.sqrt(GRAVITY * self.height))
+        checks = [check for when, state in states.items() for check in self._compare(when, state)]
+        return [*checks, Check.absolute("speed at rest, over sqrt(g H0)", "-", motion, 0.0, inf)]
 
-    def run(self) -> dict[str, Moment]:
-        """States at sqrt(H0/g) and at rest."""
-        simulation = begin(self.scene)
-        return {"tau": follow(simulation, self.fall_time), "final": follow(simulation, self.scene.end_time)}
+    def run(self, harness: Harness) -> dict[str, State]:
+        """Return the states at sqrt(H0/g), `tau`, and at rest, `final`."""
+        simulation = harness.start(self.scene)
+        ends = {"tau": self.fall_time, "final": self.scene.end_time}
+        return {when: harness.run_until(simulation, end) for when, end in ends.items()}
 
-    def _compare(self, when: str, moment: Moment) -> list[Check]:
-        L, H = self.profile(moment)
-        front = self.front(moment)
+    def _compare(self, when: str, state: State) -> list[Check]:
+        L, H = self.profile(state)
+        front = self.front(state)
         band, sph = experiment(when), jutzi(when)
         below, above = (np.interp(band[:, 0], L, H) - band[:, side] for side in (1, 2))
         outside = float(np.sqrt(np.mean(np.maximum(np.maximum(-below, above), 0.0) ** 2)))
@@ -93,30 +96,31 @@ class Cliff:
         beside = float(np.sqrt(np.mean((np.interp(sph[:, 0], L, H) - sph[:, 1]) ** 2)))
         allowed = 0.1 if when == "final" else inf
         return [
-            difference(f"{when}: RMS of H outside the experiments", "L0", outside, 0.0, allowed),
-            difference(f"{when}: RMS of H from their middle", "L0", middle, 0.0, inf),
-            difference(f"{when}: RMS of H from Jutzi's SPH", "L0", beside, 0.0, allowed),
-            difference(f"{when}: front", "L0", front, float(sph[sph[:, 1] > THIN, 0].max()), inf),
+            Check.absolute(f"{when}: RMS of H outside the experiments", "L0", outside, 0.0, allowed),
+            Check.absolute(f"{when}: RMS of H from their middle", "L0", middle, 0.0, inf),
+            Check.absolute(f"{when}: RMS of H from Jutzi's SPH", "L0", beside, 0.0, allowed),
+            Check.absolute(f"{when}: front", "L0", front, float(sph[sph[:, 1] > THIN, 0].max()), inf),
         ]
 
-    def front(self, moment: Moment) -> float:
-        """Distance of the front from the wall [L0]."""
-        L, H = self.profile(moment)
+    def front(self, state: State) -> float:
+        """Return the distance of the front from the wall [L0]."""
+        L, H = self.profile(state)
         return float(L[H > THIN].max())
 
-    def profile(self, moment: Moment) -> tuple[Array, Array]:
-        """Height of the surface over distance from the wall, both in L0, in strips of one cell.
+    def profile(self, state: State) -> tuple[Array, Array]:
+        """Return distances from the wall and heights of the surface, both in L0, of strips of one cell.
 
-        The area a strip holds is its height: rubble that flies above the surface does not count twice. Particles spread
-        theirs over three strips as mass over nodes; whole columns of the initial lattice would change strip otherwise.
+        A strip's height is the area of rubble in it over dx: rubble that flies above the surface does not count twice.
+        Particles spread their area over three strips as mass over nodes; whole columns of the initial lattice would
+        change strip otherwise.
         """
         dx = WIDTH / self.cells
-        place = moment.x[:, 0] / dx + 0.5
-        strip = np.floor(place)
+        position = state.x[:, 0] / dx + 0.5
+        strip = np.floor(position)
         strips = (strip[:, None] + [-1.0, 0.0, 1.0]).astype(int)
         # the wall mirrors
         strips = np.where(strips < 0, -1 - strips, strips)
-        area = moment.J[:, None] * self.scene.bodies[0].spacing ** 3 / (4.0 * dx) * _spread(place - strip)
+        area = state.J[:, None] * self.scene.bodies[0].spacing ** 3 / (4.0 * dx) * _spread(position - strip)
         H = np.bincount(strips.ravel(), weights=area.ravel()) / dx
         return np.asarray((np.arange(len(H)) + 0.5) * dx / WIDTH), np.asarray(H / WIDTH)
 
@@ -127,12 +131,18 @@ def _spread(f: Array) -> Array:
 
 
 def experiment(when: str) -> Array:
-    """Distance, lowest and highest height of the experiments, in L0, shape [points, 3]."""
+    """Return distance, lowest and highest height of the experiments [L0], shape [point_count, 3].
+
+    Source: Lajeunesse et al. 2005, as drawn in figure 1 of Jutzi 2015.
+    """
     return np.loadtxt(DATA / f"lajeunesse2005_band_via_jutzi2015_{when}.csv", delimiter=",", skiprows=1)
 
 
 def jutzi(when: str) -> Array:
-    """Distance and height of Jutzi's SPH with constant friction, in L0: the upper envelope, shape [points, 2]."""
+    """Return distance and height of Jutzi's SPH at constant friction [L0], the upper envelope, shape [point_count, 2].
+
+    Source: Jutzi 2015, figure 1.
+    """
     outline = np.loadtxt(DATA / f"jutzi2015_fig1_DP_{when}.csv", delimiter=",", skiprows=1)
     distance = np.unique(outline[:, 0])
     return np.array([[L, outline[outline[:, 0] == L, 1].max()] for L in distance])

@@ -8,12 +8,12 @@ import numpy as np
 from engine.constants import G_NEWTON
 from engine.scene.bodies import Sphere
 from engine.scene.scene import Gravity, Numerics, Physics, Scene
-from engine.verification.check import Check, share
-from engine.verification.harness import begin, fitted_order, follow
+from engine.verification.check import Check
+from engine.verification.harness import Harness, fitted_order
 from engine.verification.problems.materials import elastic
 
 SOFT = 1.0
-"""Bulk modulus [Pa]: a millionth of the pressure that would hold the sphere."""
+"""Bulk modulus [Pa]: a millionth of the central pressure that would balance gravity."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Fall:
 
     Attributes:
         particles: number of particles.
-        until: when it is measured, as a share of the collapse time.
+        until: time at which it is measured, over the collapse time [-].
     """
 
     particles: int
@@ -47,11 +47,11 @@ class Fall:
         """sqrt(3 pi/(32 G rho)) [s]."""
         return float(np.sqrt(3.0 * np.pi / (32.0 * G_NEWTON * 2700.0)))
 
-    def measure(self) -> float:
-        """Collapse time that the size at `until` implies [s]."""
-        simulation = begin(self.scene)
+    def measure(self, harness: Harness) -> float:
+        """Return the collapse time that the size at `until` implies [s]."""
+        simulation = harness.start(self.scene)
         before = simulation.particles.read("x")["x"]
-        end = follow(simulation, self.scene.end_time)
+        end = harness.run_until(simulation, self.scene.end_time)
         ratio = float(np.sqrt(np.mean(end.x**2) / np.mean(before**2)))
         angle = np.arccos(np.sqrt(ratio))
         return float(end.time * 0.5 * np.pi / (angle + 0.5 * np.sin(2.0 * angle)))
@@ -70,15 +70,15 @@ class Collapse:
     name = "collapse"
     particles: tuple[int, int] = (1000, 4000)
 
-    def checks(self) -> list[Check]:
-        """Collapse time at the finest resolution and extrapolated to dx = 0, and its order in dx."""
+    def checks(self, harness: Harness) -> list[Check]:
+        """Compare the collapse time extrapolated to dx = 0 and the order of its error; show that of the finest run."""
         falls = [Fall(particles) for particles in self.particles]
-        coarse, fine = (fall.measure() for fall in falls)
+        coarse, fine = (fall.measure(harness) for fall in falls)
         exact, sizes = falls[0].collapse_time, [fall.scene.dx for fall in falls]
         order = fitted_order(sizes, [abs(coarse - exact), abs(fine - exact)])
         limit = fine - (coarse - fine) / ((sizes[0] / sizes[1]) ** 2 - 1.0)
         return [
-            share(f"collapse time, {self.particles[-1]} particles", "s", fine, exact, inf),
-            share("collapse time, extrapolated with order 2", "s", limit, exact, 0.005),
+            Check.relative(f"collapse time, {self.particles[-1]} particles", "s", fine, exact, inf),
+            Check.relative("collapse time, extrapolated with order 2", "s", limit, exact, 0.005),
             Check("order of the collapse time in dx", "-", order, 2.0, max(0.0, 2.0 - order), 0.3),
         ]

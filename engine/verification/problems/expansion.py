@@ -1,4 +1,4 @@
-"""Free expansion of rubble, and its fall back to where it began (engine/physics.md, section 1)."""
+"""Free expansion of rubble, and its return to its start (engine/physics.md, section 1)."""
 
 from dataclasses import dataclass
 
@@ -7,13 +7,13 @@ import numpy as np
 from engine.scene.bodies import Sphere
 from engine.scene.scene import Physics, Scene
 from engine.simulation.initial_conditions import initial_state
-from engine.verification.check import Check, difference
-from engine.verification.harness import Moment, begin, follow
+from engine.verification.check import Check
+from engine.verification.harness import Array, Harness, State
 
 
 @dataclass(frozen=True)
 class Expansion:
-    """Rubble with v = H r: J = (1 + H t)^3, ballistic and without stress; turned around at J = 8, it is itself again.
+    """Rubble with v = H r: J = (1 + H t)^3, ballistic and without stress; reversed at J = 8, it returns to its start.
 
     Attributes:
         particles: number of particles.
@@ -30,30 +30,30 @@ class Expansion:
         body = Sphere(radius=50e3, particles=self.particles, damage=1.0, hydrostatic=False)
         return Scene(bodies=(body,), end_time=1.0 / self.rate, physics=Physics(fracture=None, gravity=None))
 
-    def checks(self) -> list[Check]:
-        """Size, J and stress at J = 8, and again at J = 1."""
+    def checks(self, harness: Harness) -> list[Check]:
+        """Compare positions, J and stress at J = 8, and again at J = 1."""
         start = initial_state(self.scene)["x"]
         flow = {"v": self.rate * start, "C": np.tile(self.rate * np.eye(3), (self.particles, 1, 1))}
-        out = follow(begin(self.scene, **flow), self.scene.end_time)
-        back = {**out.state, "v": -out.v, "C": -out.state["C"]}
-        home = follow(begin(self.scene, **back), self.scene.end_time)
+        out = harness.run_until(harness.start(self.scene, **flow), self.scene.end_time)
+        back = {**out.fields, "v": -out.v, "C": -out.fields["C"]}
+        home = harness.run_until(harness.start(self.scene, **back), self.scene.end_time)
         radius = self.scene.bodies[0].reach
         return [
             *self._compare("out", out, 8.0),
-            difference("out: distance from r (1 + H t), over R", "-", _apart(out.x, 2.0 * start) / radius, 0.0, 1e-10),
+            _distance("out: distance from r (1 + H t), over R", out.x, 2.0 * start, radius),
             *self._compare("back", home, 1.0),
-            difference("back: distance from r, over R", "-", _apart(home.x, start) / radius, 0.0, 1e-10),
+            _distance("back: distance from r, over R", home.x, start, radius),
         ]
 
-    def _compare(self, when: str, moment: Moment, J: float) -> list[Check]:
-        worst = float(moment.J[np.argmax(np.abs(moment.J - J))])
-        stress = float(np.abs(moment.state["tau"]).max())
+    def _compare(self, when: str, state: State, J: float) -> list[Check]:
+        worst = float(state.J[np.argmax(np.abs(state.J - J))])
+        stress = float(np.abs(state.fields["tau"]).max())
         return [
-            difference(f"{when}: J farthest off", "-", worst, J, 1e-9),
-            difference(f"{when}: largest stress", "Pa", stress, 0.0, 100.0),
+            Check.absolute(f"{when}: J farthest off", "-", worst, J, 1e-9),
+            Check.absolute(f"{when}: largest stress", "Pa", stress, 0.0, 100.0),
         ]
 
 
-def _apart(x: np.ndarray, y: np.ndarray) -> float:
-    """Largest distance [m] between two sets of positions."""
-    return float(np.linalg.norm(x - y, axis=1).max())
+def _distance(quantity: str, x: Array, y: Array, radius: float) -> Check:
+    """Largest distance between measured and exact positions, over the radius."""
+    return Check.absolute(quantity, "-", float(np.linalg.norm(x - y, axis=1).max()) / radius, 0.0, 1e-10)

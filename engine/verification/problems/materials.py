@@ -7,7 +7,7 @@ NEGLIGIBLE = 1e-12
 
 
 def elastic(rho0: float, bulk: float, shear: float, friction: float = 0.0) -> Material:
-    """Matter of constant moduli, P = K (rho/rho0 - 1), without cohesion.
+    """Return a material of constant moduli, P = K (rho/rho0 - 1), without thermal pressure.
 
     Args:
         rho0: density [kg/m^3].

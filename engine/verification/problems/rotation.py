@@ -7,8 +7,8 @@ import numpy as np
 from engine.scene.bodies import Sphere
 from engine.scene.scene import Physics, Scene
 from engine.simulation.conservation import Totals
-from engine.verification.check import Check, share
-from engine.verification.harness import begin, follow
+from engine.verification.check import Check
+from engine.verification.harness import Harness
 
 
 @dataclass(frozen=True)
@@ -28,29 +28,29 @@ class Rotation:
 
     @property
     def scene(self) -> Scene:
-        """One turn without gravity."""
+        """One turn of an intact sphere of R = 50 km without gravity."""
         spin = (self.rate / 3.0, 2.0 * self.rate / 3.0, 2.0 * self.rate / 3.0)
         body = Sphere(radius=50e3, particles=self.particles, spin=spin, hydrostatic=False)
         physics = Physics(strength=False, fracture=None, gravity=None)
         return Scene(bodies=(body,), end_time=2.0 * np.pi / self.rate, physics=physics)
 
-    def checks(self) -> list[Check]:
-        """Angular momentum and energies after one turn."""
+    def checks(self, harness: Harness) -> list[Check]:
+        """Compare angular momentum and energies after one turn with those before."""
         scene = self.scene
-        simulation = begin(scene)
+        simulation = harness.start(scene)
         start = simulation.totals()
-        follow(simulation, scene.end_time)
+        harness.run_until(simulation, scene.end_time)
         end = simulation.totals()
         before = float(np.linalg.norm(start.angular_momentum))
         change = float(np.linalg.norm(end.angular_momentum - start.angular_momentum))
         return [
             Check("angular momentum", "kg m2/s", before + change, before, change / before, 1e-12),
-            share("kinetic and elastic energy", "J", _motion(end), _motion(start), 1e-3),
-            share("total energy", "J", end.total_energy, start.total_energy, 1e-3),
-            share("internal against elastic energy", "J", end.internal_energy, end.elastic_energy, 1e-2),
+            Check.relative("kinetic and elastic energy", "J", _motion(end), _motion(start), 1e-3),
+            Check.relative("total energy", "J", end.total_energy, start.total_energy, 1e-3),
+            Check.relative("internal against elastic energy", "J", end.internal_energy, end.elastic_energy, 1e-2),
         ]
 
 
 def _motion(totals: Totals) -> float:
-    """Energy [J] of motion and of strain."""
+    """Kinetic energy, affine part included, and elastic energy [J]."""
     return totals.kinetic_energy + totals.affine_kinetic_energy + totals.elastic_energy

@@ -7,7 +7,7 @@ import numpy as np
 from engine.scene.collision import Collision
 from engine.scene.scene import Physics, Scene
 from engine.verification.check import Check
-from engine.verification.harness import begin, follow
+from engine.verification.harness import Harness
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,14 @@ class Rubble:
         broken = tuple(body.model_copy(update={"damage": 1.0}) for body in scene.bodies)
         return scene.model_copy(update={"bodies": broken, "physics": Physics(fracture=None, gravity=None)})
 
-    def drift(self) -> tuple[float, float]:
-        """Angular momentum about z [kg m^2/s], affine part included, before and after."""
-        simulation = begin(self.scene)
+    def drift(self, harness: Harness) -> tuple[float, float]:
+        """Return the angular momentum about z [kg m^2/s], affine part included, before and after."""
+        simulation = harness.start(self.scene)
         before = simulation.totals().angular_momentum
-        follow(simulation, self.end_time)
+        harness.run_until(simulation, self.end_time)
         return float(before[2]), float(simulation.totals().angular_momentum[2])
 
-    def checks(self) -> list[Check]:
-        """Change of the angular momentum, to round-off."""
-        before, after = self.drift()
+    def checks(self, harness: Harness) -> list[Check]:
+        """Compare the angular momentum with that before, to round-off."""
+        before, after = self.drift(harness)
         return [Check("angular momentum", "kg m2/s", after, before, float(np.abs(after / before - 1.0)), 1e-12)]

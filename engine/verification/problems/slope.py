@@ -8,8 +8,8 @@ import numpy as np
 from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene, Wall
 from engine.simulation.initial_conditions import initial_state
-from engine.verification.check import Check, difference, share
-from engine.verification.harness import Array, begin, follow
+from engine.verification.check import Check
+from engine.verification.harness import Array, Harness
 from engine.verification.problems.materials import elastic
 
 GRAVITY = 9.81
@@ -20,7 +20,7 @@ DAMPING = 42.0
 """dx^4/(kappa dt) of the transfer (engine/physics.md, section 1)."""
 
 SPREAD = 1.41
-"""Displacement thickness over l = (kappa t)^(1/4), where damping alone spreads the base's hold.
+"""Displacement thickness over l = (kappa t)^(1/4), where damping alone spreads the drag of the base.
 
 v = a t f(s), s = z/l: d4f/ds4 = 1 - f + s f'/4, f = f' = 0 at the base, and f = 1, f' = f'' = 0 at the plug, s = 3.91.
 """
@@ -66,7 +66,7 @@ class Layer:
     def scene(self) -> Scene:
         """One particle a cell along and across the slope, two in depth; z is normal to it.
 
-        The base holds the lowest half cell: nodes above it then find matter all around them.
+        The lowest half cell lies in the base: nodes above it then have matter on all sides.
         """
         dx = DEPTH / self.cells
         across = 4.0 * dx
@@ -88,7 +88,11 @@ class Layer:
         )
 
     def balance(self, z: Array) -> dict[str, Array]:
-        """State under the layer's weight, with as much shear stress as it needs or bears, z [m] above the bottom."""
+        """Return fields of the state in balance under the layer's weight, with a shear stress of at most mu_d P.
+
+        Args:
+            z: heights above the bottom [m], shape [particle_count].
+        """
         weight = DENSITY * GRAVITY * (DEPTH - z)
         P = weight * np.cos(self.angle)
         shear = np.minimum(weight * np.sin(self.angle), self.friction * P)
@@ -102,22 +106,22 @@ class Layer:
             "tau": np.stack([-J * P, -J * P, -J * P, zero, J * shear, zero], axis=1),
         }
 
-    def slide(self) -> "Slide":
-        """Motion of the plug, the upper half, during the second half of the time."""
+    def slide(self, harness: Harness) -> "Slide":
+        """Run the layer; measure the motion of the plug, the upper half, during the second half of the time."""
         scene = self.scene
         z = initial_state(scene)["x"][:, 2] + 0.5 * scene.dx
-        simulation, plug = begin(scene, **self.balance(z)), z > 0.5 * DEPTH
-        moments = [follow(simulation, time) for time in np.linspace(0.5, 1.0, 21) * scene.end_time]
-        speeds = [float(moment.v[plug, 0].mean()) for moment in moments]
-        acceleration = float(np.polyfit([moment.time for moment in moments], speeds, 1)[0])
+        simulation, plug = harness.start(scene, **self.balance(z)), z > 0.5 * DEPTH
+        states = [harness.run_until(simulation, time) for time in np.linspace(0.5, 1.0, 21) * scene.end_time]
+        speeds = [float(state.v[plug, 0].mean()) for state in states]
+        acceleration = float(np.polyfit([state.time for state in states], speeds, 1)[0])
         # the half cell in the wall belongs to the base
-        lag = DEPTH * (1.0 - float(moments[-1].v[:, 0].mean()) / speeds[-1]) - 0.5 * scene.dx
+        lag = DEPTH * (1.0 - float(states[-1].v[:, 0].mean()) / speeds[-1]) - 0.5 * scene.dx
         return Slide(acceleration, lag, simulation.step)
 
 
 @dataclass(frozen=True)
 class Slide:
-    """How a layer slid.
+    """Motion of a sliding layer.
 
     Attributes:
         acceleration: of the plug [m/s^2].
@@ -132,7 +136,7 @@ class Slide:
 
 @dataclass(frozen=True)
 class Slope:
-    """Above the friction angle a slope slides as a block on a plane would; below it rests.
+    """Above the friction angle a slope slides as a block on a plane does; below it rests.
 
     Friction grows with depth as weight does, so all depths yield at once, and only the transfer's damping of short
     waves decides how deep the layer shears: dv/dt = a - kappa d4v/dz4, kappa = dx^4/(42 dt) (engine/physics.md,
@@ -140,7 +144,7 @@ class Slope:
     t^(1/4), and what the sheared part lags the plug gains. Another 1 % of the acceleration is the law's own: elastic
     shear strain raises the normal stress over P by mu^2 P/G. Measurements are in engine/verification/granular.md.
 
-    The layer starts in balance, so the exact solution holds from the start. It is measured over several passes of a
+    The layer starts in balance, so the exact solution is valid from the start. It is measured over several passes of a
     shear wave, sqrt(3)/c_l each, while the plug is thicker than what shears below it.
 
     Attributes:
@@ -155,19 +159,19 @@ class Slope:
     gentle: float = 25.0
     cells: tuple[int, int] = (32, 64)
 
-    def checks(self) -> list[Check]:
-        """Acceleration above the friction angle, as measured and without the transfer's damping, and rest below it."""
+    def checks(self, harness: Harness) -> list[Check]:
+        """Compare the acceleration above the friction angle, measured and extrapolated to dx = 0, and rest below it."""
         friction = float(np.tan(np.deg2rad(self.friction_angle)))
         coarse, fine = (Layer(float(np.deg2rad(self.steep)), friction, cells) for cells in self.cells)
-        rest = Layer(float(np.deg2rad(self.gentle)), friction, self.cells[0]).slide().acceleration
-        exact, slide, slow = fine.acceleration, fine.slide(), coarse.slide().acceleration
+        rest = Layer(float(np.deg2rad(self.gentle)), friction, self.cells[0]).slide(harness).acceleration
+        exact, slide, slow = fine.acceleration, fine.slide(harness), coarse.slide(harness).acceleration
         limit = slide.acceleration - (slow - slide.acceleration) / (2.0**ORDER - 1.0)
         effective = (fine.pull - slide.acceleration) / (GRAVITY * float(np.cos(fine.angle)))
         thickness = SPREAD * fine.scene.dx * (slide.steps / DAMPING) ** 0.25
         return [
-            share(f"acceleration at {self.steep:.0f} deg", "m/s2", slide.acceleration, exact, 0.02),
-            share("the same, extrapolated with order 3/4", "m/s2", limit, exact, 0.01),
-            share("effective friction", "-", effective, friction, inf),
-            share("displacement thickness of what shears", "m", slide.lag, thickness, inf),
-            difference(f"acceleration at {self.gentle:.0f} deg", "m/s2", rest, 0.0, 1e-3 * GRAVITY),
+            Check.relative(f"acceleration at {self.steep:.0f} deg", "m/s2", slide.acceleration, exact, 0.02),
+            Check.relative("the same, extrapolated with order 3/4", "m/s2", limit, exact, 0.01),
+            Check.relative("effective friction", "-", effective, friction, inf),
+            Check.relative("displacement thickness of what shears", "m", slide.lag, thickness, inf),
+            Check.absolute(f"acceleration at {self.gentle:.0f} deg", "m/s2", rest, 0.0, 1e-3 * GRAVITY),
         ]

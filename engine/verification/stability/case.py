@@ -2,10 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engine.scene.bodies import Sphere
 from engine.scene.collision import Collision
@@ -14,29 +12,31 @@ from engine.scene.scene import Physics, Scene
 from engine.state.particles import Arrays
 from engine.verification.harness import altered
 
-Changes = Callable[[Scene], dict[str, NDArray[Any]]]
+Changes = Callable[[Scene], Arrays]
+"""Returns fields of the initial state that replace those of a scene."""
 
 PARTICLES = 100
 """Particles of a body."""
+
 ROWS = 40
 """Rows of the history of a case."""
 
 
 def as_it_is(scene: Scene) -> Arrays:
-    """No change of the initial state."""
+    """Change nothing in the initial state."""
     return {}
 
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, the state it starts from, and whether it may be stopped.
+    """A scene, the state from which it starts, and whether a guard may stop it.
 
     Attributes:
         group: what is extreme.
         name: how extreme.
-        scene: what runs; a valid one unless a validated limit is what the case exceeds.
+        scene: what runs; valid, unless the case is beyond a limit that validation sets.
         changes: fields of the initial state that replace the scene's own.
-        physical: matter and motion that can be, at settings that a scene accepts: must not be stopped.
+        physical: whether matter and motion are possible and the settings accepted: then no guard may stop it.
     """
 
     group: str
@@ -47,58 +47,62 @@ class Case:
 
 
 def impact(
-    velocity: float = 200.0, angle: float = 15.0, share: float = 1.0, radius: float = 50e3, **settings: Any
+    velocity: float = 200.0, angle: float = 15.0, fraction: float = 1.0, radius: float = 50e3, **keys: object
 ) -> Scene:
-    """Two bodies of R = 50 km that meet, until they could be two diameters apart or 2,000 s are over.
+    """Return a collision of two bodies until they could be two diameters apart, at most 2,000 s.
 
     Args:
         velocity: at contact [m/s].
         angle: impact angle [deg].
-        share: of that time.
+        fraction: of that time that is run [-].
         radius: of the target, and of the projectile unless it has its own [m].
-        settings: of the collision.
+        keys: other keys of the collision.
     """
-    end_time = share * min(8.0 * radius / velocity, 2000.0)
+    end_time = fraction * min(8.0 * radius / velocity, 2000.0)
     own = {"velocity": velocity, "angle": angle, "target": {"radius": radius}, "end_time": end_time}
-    chosen = {"particles": PARTICLES, "start_separation": 1.1, **settings}
-    return with_rows(Collision.model_validate({**own, **chosen}).scene())
+    return with_rows(Collision.model_validate({"particles": PARTICLES, "start_separation": 1.1, **own, **keys}).scene())
 
 
-def alone(
-    end_time: float = 500.0, particles: int = PARTICLES, physics: Physics | None = None, **settings: Any
-) -> Scene:
-    """One body of R = 50 km by itself, unstressed; settings are its own."""
-    body = Sphere.model_validate({"radius": 50e3, "particles": particles, "hydrostatic": False, **settings})
+def alone(end_time: float = 500.0, particles: int = PARTICLES, physics: Physics | None = None, **keys: object) -> Scene:
+    """Return a scene of one sphere of R = 50 km without initial stress.
+
+    Args:
+        end_time: duration [s].
+        particles: number of particles.
+        physics: of the scene; by default all that a scene has.
+        keys: other keys of the sphere.
+    """
+    body = Sphere.model_validate({"radius": 50e3, "particles": particles, "hydrostatic": False, **keys})
     return with_rows(Scene(bodies=(body,), end_time=end_time, physics=physics or Physics()))
 
 
 def with_rows(scene: Scene) -> Scene:
-    """The scene with a row of the history for every part of its time, and no snapshots."""
+    """Return the scene with `ROWS` equal intervals of the history and no snapshots."""
     interval = (scene.end_time - scene.start_time) / ROWS
     return altered(altered(scene, "output.history_interval", interval), "output.snapshot_interval", None)
 
 
 def with_courant_number(scene: Scene, cfl: float) -> Scene:
-    """The scene at a time step that validation might refuse."""
+    """Return the scene at another Courant number [-], also one that validation refuses."""
     return altered(scene, "numerics.cfl", cfl)
 
 
 def in_single_precision(scene: Scene) -> Scene:
-    """The scene in f32."""
+    """Return the scene in f32."""
     return altered(scene, "numerics.precision", "f32")
 
 
 def stiffened(factor: float) -> Material:
-    """Basalt of other elastic moduli."""
+    """Return basalt with its elastic moduli times a factor."""
     return named("basalt").slowed(factor**0.5)
 
 
 def with_materials(scene: Scene, *materials: Material) -> Scene:
-    """The scene with another material for each body."""
+    """Return the scene with another material for each body."""
     bodies = zip(scene.bodies, materials, strict=True)
     return scene.model_copy(update={"bodies": tuple(b.model_copy(update={"material": m}) for b, m in bodies)})
 
 
 def uniform(**values: float) -> Changes:
-    """Fields that have the same value everywhere."""
+    """Return changes to fields that have the same value everywhere."""
     return lambda scene: {name: np.full(scene.particles, value) for name, value in values.items()}

@@ -27,19 +27,19 @@ FLUID = Physics(shear=False, strength=False, fracture=None, gravity=None)
 
 
 def broken(scene: Scene) -> Scene:
-    """The scene with bodies of rubble."""
+    """Return the scene with bodies of rubble."""
     bodies = tuple(body.model_copy(update={"damage": 1.0}) for body in scene.bodies)
     return altered(scene.model_copy(update={"bodies": bodies}), "physics.fracture", None)
 
 
 def pair(velocity: tuple[float, float, float]) -> Scene:
-    """Two bodies of one particle; the second moves [m/s]."""
+    """Return a scene of two bodies of one particle, of which the second moves [m/s]."""
     one = Sphere(radius=50e3, particles=1, hydrostatic=False)
     return with_rows(Scene(bodies=(one, one.model_copy(update={"velocity": velocity})), end_time=500.0, physics=LOOSE))
 
 
 def _time_steps() -> list[Case]:
-    """Whatever Courant number a scene accepts must run; 5 is ten times the default."""
+    """Every Courant number that a scene accepts must run; 5 is ten times the default."""
     numbers = (0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 5.0)
     return [
         Case("Courant number", f"{cfl:g}", with_courant_number(impact(), cfl), physical=cfl <= 1.0) for cfl in numbers
@@ -49,12 +49,12 @@ def _time_steps() -> list[Case]:
 def _materials() -> list[Case]:
     factors = (1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3)
     moduli = [
-        Case("moduli", f"x {factor:g}", with_materials(impact(share=0.5), stiffened(factor), stiffened(factor)))
+        Case("moduli", f"x {factor:g}", with_materials(impact(fraction=0.5), stiffened(factor), stiffened(factor)))
         for factor in factors
     ]
     pairs = ((1.0, 1e-4), (1e-4, 1.0), (100.0, 0.01))
     contrasts = [
-        Case("contrast", f"{a:g} on {b:g}", with_materials(impact(share=0.5), stiffened(b), stiffened(a)))
+        Case("contrast", f"{a:g} on {b:g}", with_materials(impact(fraction=0.5), stiffened(b), stiffened(a)))
         for a, b in pairs
     ]
     frictions = [
@@ -70,12 +70,9 @@ def _impacts() -> list[Case]:
     fine = {"velocity": 2e4, "particles": 300}
     finer = [Case("speed", f"20000 m/s, 2 x 300, seed {seed}", impact(**fine, seed=seed)) for seed in (2, 3)]
     angles = [Case("angle", f"{angle:g} deg", impact(angle=angle)) for angle in (0.0, 45.0, 80.0, 89.9)]
+    small = {"radius": 5e3}
     ratios = [
-        Case(
-            "mass ratio",
-            f"1:1000 at {v:g} m/s",
-            impact(velocity=v, share=0.1, particles=1000, projectile={"radius": 5e3}),
-        )
+        Case("mass ratio", f"1:1000 at {v:g} m/s", impact(v, fraction=0.1, particles=1000, projectile=small))
         for v in (200.0, 5e3)
     ]
     ratios.append(Case("mass ratio", "1:8", impact(projectile={"radius": 25e3})))
@@ -89,58 +86,68 @@ def _impacts() -> list[Case]:
 
 
 def _states() -> list[Case]:
-    compressed = [
+    return [*_compressed(), *_stretched(), *_hot(), *_spinning()]
+
+
+def _compressed() -> list[Case]:
+    return [
         Case("compressed", f"rho/rho0 = {eta:g}", alone(100.0, physics=FREE), states.strained(eta))
         for eta in (1.1, 1.5, 2.0)
     ]
-    pulled = [
-        # at J = 50 intact rock would need more than the energy of evaporation to be there: no state of matter
-        Case(
-            "stretched",
-            f"J = {J:g}, D = {D:g}",
-            alone(100.0, physics=FREE, damage=D),
-            states.strained(1.0 / J, D),
-            possible,
-        )
-        for J, D, possible in (
-            (1.5, 0.0, True),
-            (1.5, 1.0, True),
-            (5.0, 0.0, True),
-            (5.0, 1.0, True),
-            (50.0, 0.0, False),
-            (50.0, 1.0, True),
-        )
+
+
+def _stretched() -> list[Case]:
+    def pulled(J: float, D: float, physical: bool = True) -> Case:
+        scene = alone(100.0, physics=FREE, damage=D)
+        return Case("stretched", f"J = {J:g}, D = {D:g}", scene, states.strained(1.0 / J, D), physical)
+
+    # at J = 50 intact rock would need more than the energy of evaporation: no state of matter
+    uniform_strain = [
+        pulled(1.5, 0.0),
+        pulled(1.5, 1.0),
+        pulled(5.0, 0.0),
+        pulled(5.0, 1.0),
+        pulled(50.0, 0.0, physical=False),
+        pulled(50.0, 1.0),
     ]
-    pulled += [
+    return uniform_strain + [
         Case("stretched", f"apart at {rate * 50e3:g} m/s", alone(2.7 / rate, physics=FREE), states.expanding(rate))
         for rate in (2e-3, 2e-2, 0.2)
     ]
-    hot = [
-        Case("hot", f"E = {E:g} J/kg", alone(100.0, physics=FREE), uniform(E=E)) for E in (0.0, 1e6, 1e7, 2e7, 1e8, 1e9)
-    ]
-    hot.append(Case("hot", "one particle, 1e8 J/kg", alone(100.0, physics=FREE), states.one_hot(1e8)))
+
+
+def _hot() -> list[Case]:
+    energies = (0.0, 1e6, 1e7, 2e7, 1e8, 1e9)
+    everywhere = [Case("hot", f"E = {E:g} J/kg", alone(100.0, physics=FREE), uniform(E=E)) for E in energies]
+    return [*everywhere, Case("hot", "one particle, 1e8 J/kg", alone(100.0, physics=FREE), states.one_hot(1e8))]
+
+
+def _spinning() -> list[Case]:
     break_up = 8.69e-4  # sqrt(4 pi G rho / 3)
-    spins = [
+    return [
         Case("spin", f"{factor:g} x break-up, D = {D:g}", alone(2000.0, spin=(0.0, 0.0, factor * break_up), damage=D))
         for factor, D in ((1.0, 0.0), (1.0, 1.0), (3.0, 1.0), (10.0, 0.0))
     ]
-    return compressed + pulled + hot + spins
 
 
-def _few_and_odd() -> list[Case]:
-    counts = [Case("particles", f"2 x {n}", impact(particles=n)) for n in (1, 2, 10)]
-    counts += [Case("particles", str(n), alone(particles=n, hydrostatic=True)) for n in (1, 2, 10)]
-    places = [
-        Case("place", "all in one point", alone(), states.coincident(1), physical=False),
-        Case("place", "all in two points", alone(), states.coincident(2), physical=False),
-        Case("place", "two in one point", alone(particles=2), states.coincident(1), physical=False),
-        Case("place", "a node of weight 1e-15", pair((0.0, 0.0, 0.0)), states.barely_touching),
-        Case("place", "1e8 m away", impact(share=0.2), states.distant(1e8)),
-        Case("place", "leaves the grid's range", pair((2e4, 0.0, 0.0)), states.near_the_edge, physical=False),
-    ]
+def _few() -> list[Case]:
+    pairs = [Case("particles", f"2 x {n}", impact(particles=n)) for n in (1, 2, 10)]
+    return pairs + [Case("particles", str(n), alone(particles=n, hydrostatic=True)) for n in (1, 2, 10)]
+
+
+def _positions() -> list[Case]:
     return [
-        *counts,
-        *places,
+        Case("position", "all in one point", alone(), states.coincident(1), physical=False),
+        Case("position", "all in two points", alone(), states.coincident(2), physical=False),
+        Case("position", "two in one point", alone(particles=2), states.coincident(1), physical=False),
+        Case("position", "a node of weight 1e-15", pair((0.0, 0.0, 0.0)), states.barely_touching),
+        Case("position", "1e8 m away", impact(fraction=0.2), states.distant(1e8)),
+        Case("position", "leaves the grid's range", pair((2e4, 0.0, 0.0)), states.near_the_edge, physical=False),
+    ]
+
+
+def _parts() -> list[Case]:
+    return [
         Case("parts", "damage 1 everywhere", broken(impact())),
         Case("parts", "without energy", impact().model_copy(update={"physics": Physics(energy=False)})),
         Case("parts", "fluid", impact().model_copy(update={"physics": FLUID})),
@@ -172,16 +179,16 @@ def _single_precision() -> list[Case]:
         Case("f32", "200 m/s", impact()),
         Case("f32", "20000 m/s", impact(velocity=2e4)),
         Case("f32", "radius 100 m", impact(radius=100.0)),
-        Case("f32", "moduli x 1000", with_materials(impact(share=0.5), stiffened(1e3), stiffened(1e3))),
+        Case("f32", "moduli x 1000", with_materials(impact(fraction=0.5), stiffened(1e3), stiffened(1e3))),
         Case("f32", "at rest", alone(hydrostatic=True)),
         Case("f32", "E = 1e+08 J/kg", hot, uniform(E=1e8)),
-        Case("f32", "1e8 m away", impact(share=0.2), states.distant(1e8)),
+        Case("f32", "1e8 m away", impact(fraction=0.2), states.distant(1e8)),
         Case("f32", "Courant number 5", with_courant_number(impact(), 5.0), physical=False),
     ]
     return [replace(case, scene=in_single_precision(case.scene)) for case in cases]
 
 
 def all_cases() -> list[Case]:
-    """Every case, group by group."""
-    groups = (_time_steps, _materials, _impacts, _states, _few_and_odd, _flows, _single_precision)
+    """Return every case, group by group."""
+    groups = (_time_steps, _materials, _impacts, _states, _few, _positions, _parts, _flows, _single_precision)
     return [case for group in groups for case in group()]

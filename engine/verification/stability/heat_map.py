@@ -1,8 +1,6 @@
 """The figure of all cases: groups as rows, their cases within, coloured by how they ended."""
 
-from pathlib import Path
 from textwrap import fill
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,50 +11,56 @@ from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-CELL = (1.0, 0.55)
-"""Width and height of a cell [inch]."""
+CASE_SIZE = (1.0, 0.55)
+"""Width and height of the rectangle of a case [inch]."""
 
 LETTERS = 14
-"""Letters of a cell's width."""
+"""Letters of a name that fit into the width of a rectangle."""
 
 COLORS = {"stopped": "tab:orange", "failed": "tab:red", "energy not known": "0.8"}
 
 MAP, LOSS = colormaps["YlGnBu"], Normalize(0.0, 1.0)
 
 
-def draw(cases: pd.DataFrame, path: Path) -> None:
-    """A stable case has the colour of the energy that it lost, others one of their own.
+def draw(cases: pd.DataFrame) -> Figure:
+    """Draw a rectangle for each case: a stable one is coloured by its dissipation, others by their verdict.
 
     Args:
         cases: one row a case, with `group`, `name`, `verdict` and `dissipation`.
-        path: the PNG to write.
     """
     groups = list(cases["group"].unique())
     columns = int(cases.groupby("group").size().max())
-    size = (CELL[0] * columns + 2.2, CELL[1] * len(groups) + 0.8)
+    size = (CASE_SIZE[0] * columns + 2.2, CASE_SIZE[1] * len(groups) + 0.8)
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots()
     for row, group in enumerate(groups):
-        for column, case in enumerate(cases[cases["group"] == group].itertuples()):
-            _cell(axes, column, row, case)
+        members = cases[cases["group"] == group]
+        looks = zip(members["name"], members["verdict"], members["dissipation"], strict=True)
+        for column, (name, verdict, dissipation) in enumerate(looks):
+            _rectangle(axes, (column, row), str(name), _color(verdict, dissipation))
     axes.set(xlim=(0, columns), ylim=(len(groups), 0), xticks=[])
     axes.set_yticks(np.arange(len(groups)) + 0.5, groups)
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
-    label = "stable: energy lost from start to end, as a share of all energies"
+    _legends(figure, axes)
+    return figure
+
+
+def _legends(figure: Figure, axes: Axes) -> None:
+    """The scale of dissipation, and the colours of the verdicts."""
+    label = "stable: energy lost from start to end, over the sum of all energies"
     figure.colorbar(ScalarMappable(LOSS, MAP), ax=axes, label=label, aspect=40, pad=0.01)
     patches = [Patch(color=color, label=name) for name, color in COLORS.items()]
     axes.legend(handles=patches, loc="lower right", ncols=len(patches))
-    figure.savefig(path, dpi=80)
 
 
-def _cell(axes: Axes, column: int, row: int, case: Any) -> None:
-    red, green, blue = _color(case.verdict, case.dissipation)
-    axes.add_patch(Rectangle((column, row), 1, 1, facecolor=(red, green, blue), edgecolor="white", lw=2.0))
-    # how bright it looks
+def _rectangle(axes: Axes, corner: tuple[int, int], name: str, color: tuple[float, float, float]) -> None:
+    red, green, blue = color
+    axes.add_patch(Rectangle(corner, 1, 1, facecolor=color, edgecolor="white", lw=2.0))
+    # perceived brightness
     ink = "white" if 0.3 * red + 0.6 * green + 0.1 * blue < 0.5 else "black"
-    name = fill(case.name, LETTERS, break_on_hyphens=False)
-    axes.text(column + 0.5, row + 0.5, name, ha="center", va="center", size=7.5, color=ink)
+    text = fill(name, LETTERS, break_on_hyphens=False)
+    axes.text(corner[0] + 0.5, corner[1] + 0.5, text, ha="center", va="center", size=7.5, color=ink)
 
 
 def _color(verdict: str, dissipation: float) -> tuple[float, float, float]:

@@ -1,4 +1,4 @@
-"""Running the whole matrix, each case in a process of its own: even one that dies is an outcome."""
+"""Running the whole matrix, each case in a process of its own, so that one that dies is an outcome too."""
 
 import logging
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from engine.verification.stability.von_neumann import BLOCKS, Block, Limit
 
 
 def run_all(jobs: Path, workers: int) -> Iterator[Outcome]:
-    """Run every case.
+    """Run every case; yield its outcome, in the order of the matrix.
 
     Args:
         jobs: directory in which each case gets its job directory.
@@ -26,24 +26,24 @@ def run_all(jobs: Path, workers: int) -> Iterator[Outcome]:
         yield from threads.map(partial(run_apart, jobs), range(len(all_cases())))
 
 
-def run_apart(jobs: Path, number: int) -> Outcome:
-    """Run one case, by its place in the matrix, in a process of its own and of its precision."""
-    case = all_cases()[number]
+def run_apart(jobs: Path, index: int) -> Outcome:
+    """Run one case, by its index in the matrix, in a process of its own and of its precision."""
+    case = all_cases()[index]
     try:
-        return in_own_process(case.scene.numerics.precision, _run_numbered, number, jobs / f"{number:03d}")
+        return in_own_process(case.scene.numerics.precision, _run_indexed, index, jobs / f"{index:03d}")
     except BrokenProcessPool:
         return failure(case, "its process died")
 
 
-def _run_numbered(number: int, directory: Path) -> Outcome:
-    """Cases hold functions, which another process cannot be given; their place in the matrix it can."""
+def _run_indexed(index: int, directory: Path) -> Outcome:
+    """Run a case known by its index: cases contain functions, which cannot be passed to another process."""
     directory.mkdir(parents=True)
     logging.basicConfig(filename=JobDirectory(directory).log, level=logging.INFO, format="%(asctime)s %(message)s")
-    return run_case(all_cases()[number], directory)
+    return run_case(all_cases()[index], directory)
 
 
 def find_limits() -> Iterator[Limit]:
-    """The largest stable time step of every block, by theory and in the engine."""
+    """Yield the largest stable time step of every block, by theory and in the engine."""
     for block in BLOCKS:
         yield in_own_process("f64", _limit, block)
 

@@ -1,4 +1,4 @@
-"""What the history of a run shows, and the bounds within which it is stable."""
+"""Extremes of a run's history, and the bounds within which it is stable."""
 
 from dataclasses import asdict, dataclass
 
@@ -14,18 +14,18 @@ LARGEST_GROWTH = 0.02
 
 @dataclass(frozen=True)
 class Measures:
-    """Extremes over all rows of a history; NaN is not known.
+    """Extremes over all rows of a history; NaN where not known.
 
     Attributes:
-        mass_change: largest change of the total mass, as a share of it [-].
+        mass_change: largest change of the total mass, over the total mass [-].
         momentum_drift: largest change of momentum over mass times the scene's speeds [-].
         momentum_bound: one unit in the last place of that per time step [-].
-        energy_growth: largest growth of the total energy, as a share of all energies [-].
-        dissipation: loss of total energy from start to end, as the same share [-].
+        energy_growth: largest growth of the total energy, over the sum of all energies [-].
+        dissipation: loss of total energy from start to end, over the same sum [-].
         speed: highest speed [m/s].
-        speed_bound: the guard's [m/s].
+        speed_bound: speed at which the guard stops [m/s].
         compression: highest rho/rho0 [-].
-        compression_bound: the guard's [-].
+        compression_bound: rho/rho0 at which the guard stops [-].
     """
 
     mass_change: float = np.nan
@@ -38,8 +38,8 @@ class Measures:
     compression: float = np.nan
     compression_bound: float = np.nan
 
-    def shares(self) -> dict[str, float]:
-        """How much of each bound is used up, 1 being all."""
+    def ratios(self) -> dict[str, float]:
+        """Return the ratio of each measure to its bound."""
         return {
             "mass": np.inf if self.mass_change else 0.0,
             "momentum": self.momentum_drift / self.momentum_bound,
@@ -50,22 +50,22 @@ class Measures:
 
     @property
     def nearest(self) -> float:
-        """The largest share of a bound that is used up."""
-        known = [share for share in self.shares().values() if not np.isnan(share)]
+        """The largest ratio of a measure to its bound."""
+        known = [ratio for ratio in self.ratios().values() if not np.isnan(ratio)]
         return max(known, default=np.nan)
 
     def broken(self) -> str:
-        """The bounds that do not hold, in words; empty if all do."""
-        return ", ".join(f"{name} at {share:.3g} of its bound" for name, share in self.shares().items() if share > 1.0)
+        """Return the bounds that are exceeded, in words; empty if none is."""
+        return ", ".join(f"{name} at {ratio:.3g} of its bound" for name, ratio in self.ratios().items() if ratio > 1.0)
 
 
 def measures(guard: Guard, rows: list[Row], epsilon: float) -> Measures:
-    """What the rows of a history say; without a row nothing is known.
+    """Return the measures of a history; without a row none is known.
 
     Args:
         guard: of the run.
         rows: of its history.
-        epsilon: spacing of its numbers at 1.
+        epsilon: spacing of the numbers of its precision at 1.
     """
     if not rows:
         return Measures()
@@ -85,6 +85,6 @@ def measures(guard: Guard, rows: list[Row], epsilon: float) -> Measures:
     )
 
 
-def as_numbers(found: Measures) -> dict[str, float]:
-    """All measures by name, with the nearest bound."""
-    return {**asdict(found), "nearest": found.nearest}
+def as_numbers(measures: Measures) -> dict[str, float]:
+    """Return all measures by name, with the largest ratio to a bound as `nearest`."""
+    return {**asdict(measures), "nearest": measures.nearest}

@@ -20,16 +20,16 @@ STABLE, STOPPED, FAILED = "stable", "stopped", "failed"
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a case came to.
+    """How a case ended.
 
     Attributes:
         group, name, precision, physical: of the case.
         verdict: `stable`, `stopped` or `failed`.
         reason: why it was stopped or failed.
         steps: time steps done.
-        progress: share of the simulated time that was reached.
+        progress: fraction of the simulated time that was reached.
         cpu_time: of the run, compilation included [s].
-        measures: what its history shows.
+        measures: extremes of its history.
     """
 
     group: str
@@ -48,25 +48,25 @@ class Outcome:
 
     @property
     def acceptable(self) -> bool:
-        """Whether this may be: nothing fails, and what is physical runs to its end."""
+        """Whether the case ended as it must: it did not fail, and if physical it ran to its end."""
         return self.verdict == STABLE or (self.verdict == STOPPED and not self.physical)
 
 
 def failure(case: Case, reason: str) -> Outcome:
-    """What a case came to that left nothing to measure."""
+    """Return the outcome of a case that left nothing to measure."""
     return Outcome(case.group, case.name, case.scene.numerics.precision, case.physical, FAILED, reason)
 
 
 def run_case(case: Case, directory: Path) -> Outcome:
-    """Run a case as a job of its own, in this process; whatever goes wrong is an outcome too.
+    """Run a case as a job of its own in this process and return how it ended; an exception is a failure.
 
     Args:
         case: what to run.
-        directory: the job directory; there and empty.
+        directory: the job directory; exists and is empty.
     """
     try:
         return _run(case, directory)
-    except Exception as error:  # any exception but a guard's is what the matrix looks for
+    except Exception as error:  # an exception is an outcome of the matrix
         return failure(case, f"{type(error).__name__}: {error}")
 
 
@@ -75,14 +75,14 @@ def _run(case: Case, directory: Path) -> Outcome:
     run = Run(case.scene, JobDirectory(directory), Options(checkpoint_interval=1.0))
     _save_start(case, run)
     status = run.to_end()
-    found = measures(run.guard, run.history.rows, backend.EPSILON)
-    verdict, reason = _verdict(run, status, found)
+    extremes = measures(run.guard, run.history.rows, backend.EPSILON)
+    verdict, reason = _verdict(run, status, extremes)
     known = (case.group, case.name, case.scene.numerics.precision, case.physical)
-    return Outcome(*known, verdict, reason, status.step, status.progress, status.cpu_time, found)
+    return Outcome(*known, verdict, reason, status.step, status.progress, status.cpu_time, extremes)
 
 
 def _save_start(case: Case, run: Run) -> None:
-    """Write the changed initial state as a checkpoint, from which the run then begins."""
+    """Write the changed initial state as a checkpoint, from which the run then starts."""
     start = case.scene.start_time
     run.simulation.start(**case.changes(case.scene))
     # one that cannot be read back would silently be replaced by the scene's own start
@@ -91,9 +91,9 @@ def _save_start(case: Case, run: Run) -> None:
     save_checkpoint(run.job, run.simulation, times)
 
 
-def _verdict(run: Run, status: Status, found: Measures) -> tuple[str, str]:
+def _verdict(run: Run, status: Status, extremes: Measures) -> tuple[str, str]:
     if status.state == "done":
-        broken = found.broken()
+        broken = extremes.broken()
         return (FAILED, f"{broken}, and no guard noticed") if broken else (STABLE, "")
     if status.fault and _checkpoint_is_good(run):
         return STOPPED, status.reason
@@ -101,7 +101,7 @@ def _verdict(run: Run, status: Status, found: Measures) -> tuple[str, str]:
 
 
 def _checkpoint_is_good(run: Run) -> bool:
-    """Whether the checkpoint of a run that was stopped can be read and holds a state that the guard passes."""
+    """Whether the checkpoint of a run that was stopped can be read and contains a state that the guard passes."""
     simulation = run.simulation
     if load_checkpoint(run.job, simulation) is None:
         return False

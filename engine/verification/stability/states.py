@@ -1,4 +1,4 @@
-"""Initial states that no scene of bodies at rest density would have."""
+"""Initial states that no scene has by itself: strained, expanding, hot, coincident."""
 
 import numpy as np
 
@@ -11,15 +11,20 @@ from engine.verification.stability.case import Changes
 
 
 def strained(eta: float, damage: float = 0.0) -> Changes:
-    """Condensed rock at rho/rho0 = eta and at rest, with its stress and the energy of it, below evaporation."""
+    """Strain rock uniformly: stress and cold energy at a density, the energy at most that of evaporation.
+
+    Args:
+        eta: rho/rho0 [-].
+        damage: D of the scene, which reduces tension [-].
+    """
 
     def changes(scene: Scene) -> Arrays:
         material = scene.materials[0]
-        held = 1.0 if eta > 1.0 else 1.0 - damage
-        energy = held * min(material.eos.cold_energy(material.rho0, eta), 0.99 * material.eos.vaporisation_energy())
-        tau = -held * material.eos.pressure(material.rho0, eta - 1.0, energy) / eta
+        intact = 1.0 if eta > 1.0 else 1.0 - damage
+        energy = intact * min(material.eos.cold_energy(material.rho0, eta), 0.99 * material.eos.vaporisation_energy())
+        tau = -intact * material.eos.pressure(material.rho0, eta - 1.0, energy) / eta
         return {
-            # particles where such density puts them
+            # spacing at that density
             "x": initial_state(scene)["x"] * eta ** (-1.0 / 3.0),
             "j": np.full(scene.particles, 1.0 / eta - 1.0),
             "E": np.full(scene.particles, energy),
@@ -30,7 +35,7 @@ def strained(eta: float, damage: float = 0.0) -> Changes:
 
 
 def expanding(rate: float) -> Changes:
-    """Velocity H r; a negative H flows together."""
+    """Set the velocity to H r; H [1/s] is negative for a flow towards the centre."""
 
     def changes(scene: Scene) -> Arrays:
         x = initial_state(scene)["x"]
@@ -39,25 +44,25 @@ def expanding(rate: float) -> Changes:
     return changes
 
 
-def coincident(places: int) -> Changes:
-    """All particles of all bodies in a few places."""
+def coincident(points: int) -> Changes:
+    """Move all particles of all bodies to a few points."""
 
     def changes(scene: Scene) -> Arrays:
         x = initial_state(scene)["x"]
-        return {"x": x[np.arange(len(x)) % places]}
+        return {"x": x[np.arange(len(x)) % points]}
 
     return changes
 
 
 def barely_touching(scene: Scene) -> Arrays:
-    """The second particle reaches the outermost node of the first with a weight of 1e-15, both under pressure."""
+    """Place the second particle so that it gives a node of the first a weight of 1e-15, both under pressure."""
     # of the lowest nodes 0 and 2 of the two, node 2 is common; the weight of the second there is (4e-8)^2/2
     x = np.array([[0.6, 0.6, 0.6], [3.5 - 4e-8, 0.6, 0.6]])
     return {**strained(1.1)(scene), "x": x * scene.dx, "v": np.array([[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])}
 
 
 def distant(distance: float) -> Changes:
-    """The last body that far away [m] along a diagonal."""
+    """Move the last body by a distance [m] along a diagonal."""
 
     def changes(scene: Scene) -> Arrays:
         state = initial_state(scene)
@@ -68,12 +73,12 @@ def distant(distance: float) -> Changes:
 
 
 def near_the_edge(scene: Scene) -> Arrays:
-    """The second of two particles fifty cells inside the range of the grid."""
+    """Place the second of two particles fifty cells inside the range of the grid."""
     return {"x": np.array([[0.0, 0.0, 0.0], [(BLOCK_EDGE * HALF_RANGE - 50.0) * scene.dx, 0.0, 0.0]])}
 
 
 def one_hot(energy: float) -> Changes:
-    """One particle [J/kg] amid cold ones."""
+    """Give one particle at the centre an energy [J/kg], and none to the others."""
 
     def changes(scene: Scene) -> Arrays:
         values = np.zeros(scene.particles)
@@ -84,7 +89,12 @@ def one_hot(energy: float) -> Changes:
 
 
 def random_motion(speed: float, rate: float) -> Changes:
-    """Every particle with a velocity [m/s] and a velocity gradient [1/s] of its own."""
+    """Draw a velocity and a velocity gradient for every particle from normal distributions.
+
+    Args:
+        speed: standard deviation of each component of velocity [m/s].
+        rate: that of each component of the gradient [1/s].
+    """
 
     def changes(scene: Scene) -> Arrays:
         generator, count = np.random.default_rng(scene.seed), scene.particles

@@ -14,15 +14,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engine.errors import GuardFault
 from engine.scene.bodies import Box
 from engine.scene.material import named
 from engine.scene.scene import Numerics, Physics, Scene
-from engine.verification.harness import altered, begin
-
-Array = NDArray[np.float64]
+from engine.verification.harness import Array, Harness, altered
 
 CELLS = 4
 """Edge of the periodic block: waves of one to four cells, the shortest among them."""
@@ -31,7 +28,7 @@ START = 1e-6
 """Speed [m/s] of the random motion that must not grow."""
 
 ROUNDING = 1e-5
-"""Excess of the spectral radius over one that is none: rigid motion is a double eigenvalue."""
+"""Excess of the spectral radius over one that is round-off: rigid motion is a double eigenvalue."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +37,8 @@ class Limit:
 
     Attributes:
         block: particles of a cell along its edges.
-        measured, theory: c dt/dx [-].
+        measured: c dt/dx in the engine [-].
+        theory: c dt/dx of the matrix of a step [-].
     """
 
     block: str
@@ -66,7 +64,7 @@ class Block:
         return " x ".join(f"{n / CELLS:g}" for n in self.lattice)
 
     def scene(self, cfl: float) -> Scene:
-        """The block at a time step that validation might refuse."""
+        """Return the block at a Courant number [-], also one that validation refuses."""
         edge = float(CELLS)
         per_cell = float(np.prod(self.lattice)) / CELLS**3
         physics = Physics(strength=False, fracture=None, gravity=None)
@@ -76,22 +74,22 @@ class Block:
         return altered(scene, "numerics.cfl", cfl)
 
     def limit(self) -> Limit:
-        """Both limits; Taichi must have been started."""
+        """Return both limits; Taichi must have been started."""
         return Limit(self.name, self.measured(), self.theory())
 
     def theory(self) -> float:
-        """Largest stable c dt/dx of the matrix of a step."""
+        """Return the largest stable c dt/dx of the matrix of a step."""
         T, K = self._operators()
         return bisect(lambda courant: spectral_radius(T, K, courant) <= 1.0 + ROUNDING)
 
     def measured(self) -> float:
-        """Largest c dt/dx at which random motion of 1e-9 of the wave speed does not grow in the engine."""
+        """Return the largest c dt/dx at which random motion of 1e-9 of the wave speed does not grow in the engine."""
         return bisect(self.decays)
 
     def decays(self, courant: float) -> bool:
-        """Whether random motion does not grow in the engine at steps of c dt/dx."""
+        """Return whether random motion does not grow in the engine at steps of c dt/dx."""
         generator, count = np.random.default_rng(1), int(np.prod(self.lattice))
-        simulation = begin(self.scene(courant), v=START * generator.normal(size=(count, 3)))
+        simulation = Harness().start(self.scene(courant), v=START * generator.normal(size=(count, 3)))
         try:
             while simulation.step < self.steps:
                 simulation.advance(simulation.scene.end_time)
@@ -121,7 +119,7 @@ class Block:
 
 
 def spectral_radius(T: Array, K: Array, courant: float) -> float:
-    """Largest growth of any wave in a step of c dt/dx."""
+    """Return the largest growth of any wave in a step of c dt/dx: the spectral radius of its matrix."""
     size, dt = len(K), courant
     step = np.block([[T, -dt * np.eye(size)], [dt * K @ T, np.eye(size) - dt**2 * K]])
     return float(np.abs(np.linalg.eigvals(step)).max())
@@ -142,11 +140,11 @@ def _stiffness(D: Array) -> Array:
     return K.reshape(3 * nodes, 3 * nodes)
 
 
-def bisect(holds: Callable[[float], bool], low: float = 0.5, high: float = 2.0, digits: float = 2e-3) -> float:
-    """Largest value at which a condition holds that does at the lower end and does not at the upper one."""
+def bisect(condition: Callable[[float], bool], low: float = 0.5, high: float = 2.0, digits: float = 2e-3) -> float:
+    """Return the largest value at which a condition is true; it must be at the lower end, and not at the upper one."""
     while high - low > digits:
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if holds(middle) else (low, middle)
+        low, high = (middle, high) if condition(middle) else (low, middle)
     return low
 
 

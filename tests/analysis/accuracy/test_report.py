@@ -2,26 +2,25 @@
 
 from pathlib import Path
 
+import matplotlib.image
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.colors import same_color
 from typer.testing import CliRunner
 
 from analysis.__main__ import app
 from analysis.accuracy.cases import Case, cases
-from analysis.accuracy.figure import errors
+from analysis.accuracy.figure import error_against_cost, errors
 from analysis.accuracy.measure import accuracy
-from analysis.accuracy.orders import observed_order
 from analysis.accuracy.report import markdown
-from analysis.campaign import read_campaign
 from analysis.results.variables import OUTCOMES
+from campaigns.campaign import KeptCampaign, read_campaign
 from campaigns.expansion import expand
 from campaigns.study import find_study, read_study
 from engine.errors import SceneError
 from engine.job.storage import read_dataset, write_json
 from engine.scene.collision import Collision
-from engine.verification.accuracy.pareto import pareto
 from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 COUNTS = {"particles500": 500, "base": 1000, "particles4000": 4000, "particles32000": 32000}
@@ -72,29 +71,12 @@ def test_orders_that_seeds_do_not_resolve_are_unknown() -> None:
     assert accuracy(results(1.0), known())["order_b_over_a"].isnull().all()
 
 
-@pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 4.0])
-@pytest.mark.parametrize("finest", [0.0, 0.5])
-def test_observed_order(order: float, finest: float) -> None:
-    coarse, fine = (-7.0 * (h**order - finest**order) for h in (2.0, 1.0))
-    assert observed_order(coarse, fine, (2.0, 1.0, finest)) == pytest.approx(order)
-
-
-@pytest.mark.parametrize(("coarse", "fine"), [(1.0, -1.0), (1.0, 1.0), (0.0, 1.0), (1.0, 2.0)])
-def test_no_order_where_errors_do_not_shrink(coarse: float, fine: float) -> None:
-    assert np.isnan(observed_order(coarse, fine, (2.0, 1.0, 0.5)))
-
-
 def test_an_error_that_seeds_hide_is_their_interval() -> None:
     found = accuracy(results(0.1), known())
     frame = errors(found, "b_over_a")
     assert frame.loc["cfl", "resolved"] and frame.loc["cfl", "error"] == pytest.approx(frame.loc["cfl", "change"])
     assert not frame.loc["base", "resolved"] and frame.loc["base", "error"] == frame.loc["base", "half"]
     assert "particles32000" not in frame.index
-
-
-def test_pareto_front() -> None:
-    runs = pd.DataFrame({"cpu_time": [4.0, 1.0, 2.0, 3.0, 3.0], "error": [1.0, 9.0, 9.0, 4.0, 5.0]})
-    assert pareto(runs).index.tolist() == [1, 3, 0]
 
 
 def test_runs_that_are_not_done_do_not_count() -> None:
@@ -109,11 +91,11 @@ def test_runs_that_are_not_done_do_not_count() -> None:
     assert "1 cases of the study have no finished run" in markdown(found, 5)
 
 
-def test_the_shipped_study_turns_one_setting_a_case_but_for_fine_gravity(tmp_path: Path) -> None:
+def test_the_shipped_study_varies_one_setting_a_case_but_for_fine_gravity(tmp_path: Path) -> None:
     write_json(tmp_path / "campaign.json", expand(read_study(find_study("accuracy")), "accuracy").content())
-    found = cases(read_campaign(tmp_path))
-    assert found["base"].knob == "none"
-    assert [name for name, case in found.items() if case.knob == "several"] == ["particles5000-fine-gravity"]
+    found = cases(read_campaign(tmp_path, KeptCampaign))
+    assert found["base"].setting == "none"
+    assert [name for name, case in found.items() if case.setting == "several"] == ["particles5000-fine-gravity"]
     assert found["viscosity.shear350000"] == Case("viscosity.shear", 3.5e5, 1000)
     assert found["particles20000"].particles == 20000
 
@@ -136,9 +118,30 @@ def test_the_command_writes_data_figure_and_tables(tmp_path: Path) -> None:
     assert told.exit_code == 0, told.output
     assert (tmp_path / "accuracy.md").read_text() in told.output and "| viscous | 2 |" in told.output
     found = read_dataset(tmp_path / "accuracy.nc")
-    assert found["knob"].values.tolist() == ["none", "particles", "viscosity.shear"]
+    assert found["setting"].values.tolist() == ["none", "particles", "viscosity.shear"]
     assert all(found[name].attrs["units"] for name in found.data_vars)
-    assert (tmp_path / "accuracy.png").stat().st_size > 10000
+    assert matplotlib.image.imread(tmp_path / "accuracy.png").shape[0] > 500
+
+
+def test_the_figure_shows_the_error_of_each_case_against_its_time_and_what_no_other_case_beats() -> None:
+    some = results(0.1)
+    some["cpu_time"] = ("case", "seed"), np.outer([1.0, 2.0, 8.0, 64.0, 3.0], np.ones(3))
+    found = accuracy(some, known())
+    figure = error_against_cost(found)
+    titles = ["$M_\\mathrm{lr}\\,/\\,M_\\mathrm{target}$", "$b/a$", "$c/a$", "bulk density [kg m-3]"]
+    assert [axes.get_title() for axes in figure.axes] == titles
+    assert (figure.get_supxlabel(), figure.get_supylabel()) == ("CPU time of a run [s]", "difference to particles32000")
+    frame = errors(found, "b_over_a")
+    for axes in figure.axes:
+        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+        front, *points = axes.lines
+        drawn = {(float(line.get_xdata()[0]), float(line.get_ydata()[0])) for line in points}
+        assert drawn == set(zip(frame["cpu_time"], frame["error"], strict=True)), "all outcomes here are the same"
+        assert set(zip(front.get_xdata(), front.get_ydata(), strict=True)) < drawn
+        hollow = [line for line in points if same_color(line.get_markerfacecolor(), "white")]
+        assert len(hollow) == (~frame["resolved"]).sum() > 0
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert legend == ["particles", "base", "numerics.cfl", "not resolved", "no case beats these"]
 
 
 @pytest.mark.parametrize(
@@ -149,4 +152,4 @@ def test_another_campaign_is_refused(tmp_path: Path, coords: dict[str, list[obje
         tmp_path, coords, [({key: values[0] for key, values in coords.items()}, Collision(velocity=1, angle=5))]
     )
     with pytest.raises(SceneError, match=told):
-        cases(read_campaign(tmp_path))
+        cases(read_campaign(tmp_path, KeptCampaign))

@@ -27,12 +27,12 @@ def test_each_drift_is_relative_to_its_own_scale() -> None:
     np.testing.assert_allclose(found["mass"], 1e-3)
     np.testing.assert_allclose(found["momentum"], 1e-3 * 1e20 / momentum)
     np.testing.assert_allclose(found["angular_momentum"], 1e-3 * 1e25 / angular_momentum)
-    np.testing.assert_allclose(found["energy"], 1e-3 * 5e21 / 5e21)
+    np.testing.assert_allclose(found["total_energy"], 1e-3 * 5e21 / 5e21)
 
 
 def test_mass_and_energy_keep_the_sign_of_their_change() -> None:
     found = drifts(history(TIMES, -1e-3), scene(15.0)).isel(time=-1)
-    assert found["mass"] < 0.0 and found["energy"] < 0.0 and found["momentum"] > 0.0
+    assert found["mass"] < 0.0 and found["total_energy"] < 0.0 and found["momentum"] > 0.0
 
 
 def test_a_head_on_impact_has_no_angular_momentum_to_compare_with() -> None:

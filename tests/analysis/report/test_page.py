@@ -9,7 +9,7 @@ import pytest
 
 from analysis.report.products import plots
 from engine.job.storage import write_json
-from tests.analysis.report.test_products import campaign, collision, grid
+from tests.helpers.fake_campaigns import campaign, collision, grid
 from tests.helpers.fake_jobs import write_job
 
 COORDS = {"velocity": [100.0, 200.0], "angle": [5.0, 15.0]}

@@ -10,36 +10,16 @@ import pytest
 from typer.testing import CliRunner
 
 from analysis.__main__ import app, main
-from analysis.report.figures import angle as shape_versus_angle
-from analysis.report.figures.surface import picture
+from analysis.remnant.fragments import friends_of_friends
 from analysis.report.products import plots
 from analysis.results.collect import collect
 from analysis.results.tables import printed, reasons, series, shape_table
 from engine.job.storage import write_dataset
-from engine.scene.collision import Collision
 from engine.scene.scene import scene_in
+from tests.helpers.fake_campaigns import campaign, collision, grid
 from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 FIGURES = ("shape_vs_angle", "maps", "remnants", "conservation")
-
-
-def collision(**settings: Any) -> Collision:
-    nested = {"viscosity": {"shear": settings.pop("viscosity.shear")}} if "viscosity.shear" in settings else {}
-    return Collision(**{"velocity": 200.0, "angle": 15.0, "particles": 200, "end_time": 1000.0, **nested, **settings})
-
-
-def campaign(directory: Path, coords: dict[str, list[Any]], cells: list[dict[str, Any]], done: int) -> Path:
-    """A campaign of the given cells whose first `done` jobs are done; remnants of later jobs are longer."""
-    write_campaign(directory, coords, [(cell, collision(**cell)) for cell in cells])
-    for number, cell in enumerate(cells[:done]):
-        points, spacing = lattice_ellipsoid(((1.0 + 0.4 * number) * 1e5, 1e5, 8e4), 150)
-        write_job(directory / f"jobs/{number}", collision(**cell), particles(points, spacing, time=900.0))
-    return directory
-
-
-def grid(coords: dict[str, list[Any]]) -> list[dict[str, Any]]:
-    frame = pd.MultiIndex.from_product(list(coords.values()), names=list(coords)).to_frame(index=False)
-    return [{str(key): value for key, value in row.items()} for row in frame.to_dict("records")]
 
 
 LAYOUTS: dict[str, tuple[dict[str, list[Any]], int]] = {
@@ -52,6 +32,7 @@ LAYOUTS: dict[str, tuple[dict[str, list[Any]], int]] = {
 
 
 def check_figures(directory: Path) -> None:
+    """Every figure is a picture that can be opened; tests/analysis/report/figures tells what is on it."""
     for name in FIGURES:
         image = matplotlib.image.imread(directory / f"figures/{name}.png")
         assert image.shape[0] > 150 and image.shape[1] > 300, name
@@ -69,6 +50,19 @@ def test_every_layout_has_its_table_and_figures(tmp_path: Path, layout: str) -> 
     table = pd.read_csv(tmp_path / "shape_table.csv")
     assert len(table) == len(cells) and table["b_over_a"].notna().sum() == done
     assert len(printed(shape_table(results)).splitlines()) == len(cells) + 1
+
+
+def test_clumps_of_a_state_are_sought_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    counts: list[int] = []
+
+    def counted(position: np.ndarray, *arguments: Any) -> np.ndarray:
+        counts.append(len(position))
+        return friends_of_friends(position, *arguments)
+
+    monkeypatch.setattr("analysis.remnant.fragments.friends_of_friends", counted)
+    coords, done = LAYOUTS["grid"]
+    plots(campaign(tmp_path, coords, grid(coords), done))
+    assert len(counts) == done
 
 
 def test_cases_have_a_row_each_and_figures(tmp_path: Path) -> None:
@@ -98,16 +92,6 @@ def test_series_are_told_apart_by_everything_but_velocity_angle_and_seed(tmp_pat
     assert [len(rows) for _, rows in groups] == [4, 4]
 
 
-@pytest.mark.parametrize("velocities", [[200.0], [100.0, 200.0]])
-def test_no_two_lines_look_alike(tmp_path: Path, velocities: list[float]) -> None:
-    coords = {"velocity": velocities, "angle": [5.0], "friction": [0.4, 0.5, 0.6, 0.8]}
-    results = collect(campaign(tmp_path, coords, grid(coords), 4 * len(velocities)))
-    lines = shape_versus_angle.draw(results, {}).legends[0].get_lines()[:-1]
-    looks = {(tuple(line.get_color()), line.get_marker(), line.get_linestyle()) for line in lines}
-    assert len(lines) == len(looks) == 4 * len(velocities)
-    assert len({look[0] for look in looks}) == (4 if len(velocities) == 1 else 2)
-
-
 def test_an_axis_of_end_times_is_a_series_and_the_times_of_cases_are_not(tmp_path: Path) -> None:
     coords = {"velocity": [200.0], "angle": [5.0, 15.0], "end_time": [500.0, 1000.0]}
     groups = list(series(collect(campaign(tmp_path, coords, grid(coords), 0))))
@@ -122,19 +106,6 @@ def test_reasons_name_the_job(tmp_path: Path) -> None:
     campaign(tmp_path, coords, grid(coords), 1)
     write_job(tmp_path / "jobs/1", collision(), None, "failed", "dt too small")
     assert reasons(collect(tmp_path)) == ["1: failed: dt too small"]
-
-
-def test_a_picture_shows_the_nearest_body() -> None:
-    view = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 5.0], [10.0, 0.0, 0.0]])
-    found = picture(view, np.array([0, 1, 0]), 1.0, 0.1)
-    left, right, bottom, top = found.extent
-
-    def at(x: float, y: float) -> np.ndarray:
-        height, width = found.pixels.shape[:2]
-        return found.pixels[int((y - bottom) / (top - bottom) * height), int((x - left) / (right - left) * width)]
-
-    assert at(0.0, 0.0)[0] > at(0.0, 0.0)[2] and at(10.0, 0.0)[2] > at(10.0, 0.0)[0]
-    assert at(5.0, 0.0)[3] == 0 and at(0.0, 0.0)[3] == 255
 
 
 def test_the_command_line_prints_the_table_and_says_when_nothing_is_done(tmp_path: Path) -> None:

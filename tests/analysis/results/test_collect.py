@@ -9,9 +9,10 @@ import pytest
 import xarray as xr
 
 from analysis.results.collect import collect
-from analysis.results.variables import OUTCOMES, TEXTS
+from analysis.results.variables import OUTCOMES, TEXTS, UndescribedError
 from engine.errors import SceneError
 from engine.job.storage import read_dataset, write_json
+from engine.quantities import Quantity
 from engine.scene.collision import Collision
 from tests.helpers.fake_jobs import (
     RHO0,
@@ -71,6 +72,20 @@ def test_a_thin_remnant_is_flagged(tmp_path: Path) -> None:
     cell = collect(tmp_path).isel(velocity=0, angle=0)
     assert cell["largest_thin"] == 1.0
     assert cell["c_over_a_extended"] > cell["c_over_a"]
+
+
+def test_what_is_measured_is_described(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    one_job(tmp_path)
+    monkeypatch.delitem(OUTCOMES, "clumps")
+    with pytest.raises(UndescribedError, match="clumps"):
+        collect(tmp_path)
+
+
+def test_what_is_described_is_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    one_job(tmp_path)
+    monkeypatch.setitem(OUTCOMES, "colour", Quantity("colour of the largest remnant", "1"))
+    with pytest.raises(UndescribedError, match="colour"):
+        collect(tmp_path)
 
 
 def truncate(job: Path) -> None:
@@ -172,8 +187,16 @@ def test_results_are_cf_and_come_back_as_written(grid: Path) -> None:
     assert "velocity" not in again.attrs
 
 
-def test_collecting_twice_gives_the_same_values(grid: Path) -> None:
-    xr.testing.assert_identical(collect(grid), collect(grid))
+def test_collecting_again_takes_in_what_was_done_since_and_changes_nothing_else(grid: Path) -> None:
+    before = collect(grid)
+    write_job(grid / "jobs/3", collision(velocity=200.0, angle=5.0), remnant())
+    again = collect(grid)
+    assert again["state"].sel(velocity=200, angle=5) == "done"
+    assert np.isfinite(again["mass_ratio"].sel(velocity=200, angle=5))
+    others = (before["state"] != "pending").drop_attrs()
+    for name in before.data_vars:
+        xr.testing.assert_identical(again[name].where(others), before[name].where(others))
+    assert again.attrs == before.attrs
 
 
 def test_cases_have_their_parameters_as_coordinates(tmp_path: Path) -> None:

@@ -3,8 +3,8 @@ import pytest
 
 from engine.laws.viscosity import Viscosity
 from engine.scene.scene import ViscosityCoefficients
+from engine.verification.material_point import MaterialPoint, unpacked
 from tests.helpers.device import Array, norm, rotations, traceless, worst
-from tests.helpers.material_point import Points, unpacked
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, log_strain, strength_limit, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -12,11 +12,11 @@ pytestmark = pytest.mark.usefixtures("taichi")
 FRICTION = 0.839
 
 
-def strained(count: int, size: float, **parts: bool) -> tuple[Points, Array]:
+def strained(count: int, size: float, **parts: bool) -> tuple[MaterialPoint, Array]:
     """Particles of random damage after one random step from rest, and their displacement gradients."""
     generator = np.random.default_rng(1)
     X = size * generator.uniform(-1.0, 1.0, (count, 3, 3)) * generator.choice([1e-3, 0.1, 1.0], (count, 1, 1))
-    points = Points(count, **parts)
+    points = MaterialPoint(count, **parts)
     points.particles.write({"damage_root": np.cbrt(generator.choice([0.0, 0.5, 1.0], count))})
     points.step(X, 1.0)
     return points, X
@@ -30,7 +30,7 @@ def rest_pressure(j: Array) -> Array:
 
 @pytest.mark.parametrize("strain", [1e-9, 1e-7, 1e-5, -1e-5])
 def test_small_uniaxial_strain_meets_the_longitudinal_modulus(strain):
-    points = Points(1)
+    points = MaterialPoint(1)
     points.step(np.diag([strain, 0.0, 0.0]), 1.0)
     expected = strain * np.diag([LONGITUDINAL, K - 2.0 / 3.0 * G, K - 2.0 / 3.0 * G])[None]
     # the laws bend by a few times the strain
@@ -39,7 +39,7 @@ def test_small_uniaxial_strain_meets_the_longitudinal_modulus(strain):
 
 @pytest.mark.parametrize("gamma", [1e-8, 1e-4])
 def test_small_simple_shear_meets_the_shear_modulus(gamma):
-    points = Points(1)
+    points = MaterialPoint(1)
     points.step(gamma * np.eye(3)[[0]].T @ np.eye(3)[[1]], 1.0)
     assert points.stress[0, 0, 1] == pytest.approx(G * gamma, rel=gamma**2 + 1e-15)
     assert points["E"][0] == pytest.approx(0.5 * G * gamma**2 / RHO0, rel=gamma**2 + 1e-14)
@@ -48,11 +48,11 @@ def test_small_simple_shear_meets_the_shear_modulus(gamma):
 @pytest.mark.parametrize(("steps", "size"), [(1, 0.3), (30, 1e-8), (30, 1e-3), (30, 0.03)])
 def test_stress_belongs_to_the_deformation_gradient(steps, size):
     generator = np.random.default_rng(2)
-    points, X = Points(1000), np.zeros((1000, 3, 3))
+    points, X = MaterialPoint(1000), np.zeros((1000, 3, 3))
     for _ in range(steps):
-        A = size * generator.uniform(-1.0, 1.0, (1000, 3, 3))
-        points.step(10.0 * A, 0.1)
-        X = A + X + A @ X
+        H = size * generator.uniform(-1.0, 1.0, (1000, 3, 3))
+        points.step(10.0 * H, 0.1)
+        X = H + X + H @ X
     points.settle()
     ln_V = log_strain(X)
     J = np.exp(np.trace(ln_V, axis1=1, axis2=2))
@@ -67,9 +67,9 @@ def test_stress_turns_with_the_particle():
     generator = np.random.default_rng(3)
     strain = 0.02 * generator.uniform(-1.0, 1.0, (500, 3, 3))
     Q = rotations(generator, 500)
-    before = Points(500)
+    before = MaterialPoint(500)
     before.step(strain, 1.0)
-    after = Points(500)
+    after = MaterialPoint(500)
     after.step(strain, 1.0)
     after.step(Q - np.eye(3), 1.0)
     turned = Q @ before.stress @ Q.transpose(0, 2, 1)
@@ -113,7 +113,7 @@ def test_radial_return_is_idempotent():
 def test_only_pressure_in_tension_falls_with_damage():
     generator = np.random.default_rng(4)
     D = generator.choice([0.0, 1.0, generator.random()], 2000)
-    points, X = Points(2000), 1e-2 * generator.uniform(-1.0, 1.0, (2000, 3, 3))
+    points, X = MaterialPoint(2000), 1e-2 * generator.uniform(-1.0, 1.0, (2000, 3, 3))
     points.particles.write({"damage_root": np.cbrt(D)})
     points.step(X, 1.0)
     J = np.exp(np.trace(log_strain(X), axis1=1, axis2=2))
@@ -125,7 +125,7 @@ def test_only_pressure_in_tension_falls_with_damage():
 
 def test_energy_grows_by_the_work_of_the_mean_of_all_stress():
     generator = np.random.default_rng(5)
-    points = Points(2000, strength=True, viscosity=Viscosity(ViscosityCoefficients(shear=1e5, bulk=1e5), 1e3))
+    points = MaterialPoint(2000, strength=True, viscosity=Viscosity(ViscosityCoefficients(shear=1e5, bulk=1e5), 1e3))
     for _ in range(3):
         L, dt = 0.01 * generator.uniform(-1.0, 1.0, (2000, 3, 3)), 0.7
         E, tau = points["E"], unpacked(points["tau"])
@@ -144,6 +144,6 @@ def test_without_shear_there_is_only_pressure():
 
 def test_waves_at_rest_are_longitudinal_with_shear_and_bulk_without():
     for shear, speed in ((True, 4593.0), (False, 3145.0)):
-        points = Points(1, shear=shear)
+        points = MaterialPoint(1, shear=shear)
         points.settle()
         assert points.wave_speed[0] == pytest.approx(speed, abs=0.5)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from engine.verification.material_point import MaterialPoint
 from tests.helpers.device import norm, traceless
-from tests.helpers.material_point import Points
 from tests.helpers.oracle import RHO0, G, log_strain, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -17,7 +17,7 @@ def test_adiabatic_energy_errs_by_less_than_the_strain_of_a_step():
     """The rate belongs to the end of a step, as the grid's work needs it: the error is of first order."""
     ends, steps = np.array([0.7, 0.97, 1.05, 0.999]), np.array([50, 100, 200])
     J_end, count = (values.ravel() for values in np.meshgrid(ends, steps, indexing="ij"))
-    points = Points(12)
+    points = MaterialPoint(12)
     for n in range(200):
         J = 1.0 + (J_end - 1.0) * np.minimum(np.array([n, n + 1])[:, None] / count, 1.0)
         points.step(((J[1] / J[0]) ** (1.0 / 3.0) - 1.0)[:, None, None] * np.eye(3), 1.0)
@@ -31,13 +31,13 @@ def test_adiabatic_energy_errs_by_less_than_the_strain_of_a_step():
 def test_shear_stores_the_elastic_energy_of_the_log_strain():
     """At constant volume all work is shear: rho0 E = G |dev ln V|^2, whatever the path."""
     steps = np.array([10, 20, 40])
-    points, X = Points(3), np.zeros((3, 3, 3))
+    points, X = MaterialPoint(3), np.zeros((3, 3, 3))
     for Q in np.linalg.qr(np.random.default_rng(1).normal(size=(4, 3, 3)))[0]:
         for n in range(40):
             size = np.where(n < steps, 0.1 / steps, 0.0)
-            A = size[:, None, None] * np.outer(Q[:, 0], Q[:, 1])
-            points.step(A, 1.0)
-            X = A + X + A @ X
+            H = size[:, None, None] * np.outer(Q[:, 0], Q[:, 1])
+            points.step(H, 1.0)
+            X = H + X + H @ X
     errors = np.abs(points["E"] * RHO0 / (G * norm(traceless(log_strain(X))) ** 2) - 1.0)
     # of second order, as an isochoric increment has no trace
     assert errors[2] < 1e-3
@@ -45,7 +45,7 @@ def test_shear_stores_the_elastic_energy_of_the_log_strain():
 
 
 def test_two_hundred_cycles_of_strain_leave_no_energy():
-    points = Points(1)
+    points = MaterialPoint(1)
     phase = 2.0 * np.pi * np.arange(50) / 50
     strain = 1e-3 * np.sin(np.append(phase, 2.0 * np.pi))
     peak = 0.0

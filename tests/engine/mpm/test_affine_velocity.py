@@ -5,7 +5,7 @@ import pytest
 import taichi as ti
 
 from engine.device.backend import mat3
-from engine.mpm.transfer import affine_velocity
+from engine.mpm.apic import affine_velocity
 from tests.helpers.device import Array, worst
 from tests.helpers.scenes import advance, body, scene, started
 

@@ -1,9 +1,10 @@
-"""Running verification problems one after the other, and their results as a table."""
+"""Running verification problems one after the other; their results on the screen and in a CSV file."""
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from math import inf
+from pathlib import Path
 
 import pandas as pd
 from rich.table import Table
@@ -11,11 +12,12 @@ from rich.table import Table
 from engine.device import backend
 from engine.errors import RunFault
 from engine.verification.check import Check, Problem
+from engine.verification.harness import Harness
 
 
 @dataclass(frozen=True)
 class Result:
-    """What one problem reported.
+    """How one problem ended.
 
     Attributes:
         name: of the problem.
@@ -36,19 +38,25 @@ class Result:
 
 
 def run_all(problems: Iterable[Problem], arch: str, threads: int) -> Iterator[Result]:
-    """Results of the problems, each in a fresh Taichi program."""
+    """Run the problems, each in a fresh Taichi program; yield each result as it is known.
+
+    Args:
+        problems: what to run.
+        arch: Taichi's name of the device.
+        threads: CPU threads.
+    """
     for problem in problems:
         backend.start(arch, threads)
         begun = time.monotonic()
         try:
-            checks, fault = problem.checks(), ""
+            checks, fault = problem.checks(Harness()), ""
         except RunFault as error:
             checks, fault = [], str(error)
         yield Result(problem.name, checks, time.monotonic() - begun, fault)
 
 
 def table(results: Iterable[Result]) -> Table:
-    """Scene, quantity, measured, expected, error, allowed and run time."""
+    """Return the table to print: scene, quantity, measured, expected, error, allowed and computing time."""
     result_table = Table()
     for column in ("scene", "quantity", "unit"):
         result_table.add_column(column, no_wrap=True)
@@ -62,8 +70,27 @@ def table(results: Iterable[Result]) -> Table:
     return result_table
 
 
-def frame(results: Iterable[Result]) -> pd.DataFrame:
-    """One row per comparison; a problem that broke off has none."""
+def write_table(path: Path, results: Sequence[Result], order: Sequence[str]) -> None:
+    """Write all digits of the results into a CSV file, in which rows of other problems stay.
+
+    Args:
+        path: the file; made if it is not there.
+        results: of the problems that ran; one that broke off has no rows.
+        order: names of all problems, as their rows are ordered.
+    """
+    rows = _frame(results)
+    if path.is_file():
+        former = pd.read_csv(path, dtype=str, keep_default_na=False)
+        kept = former[~former["scene"].isin([result.name for result in results])]
+        rows = pd.concat([kept, rows]) if len(rows) else kept
+    if len(rows):
+        indices = {name: index for index, name in enumerate(order)}
+        rows = rows.sort_values("scene", key=lambda names: names.map(indices), kind="stable")
+    rows.to_csv(path, index=False)
+
+
+def _frame(results: Iterable[Result]) -> pd.DataFrame:
+    """One row a comparison."""
     return pd.DataFrame(
         [
             {"scene": result.name, **asdict(check), "passed": check.passed, "wall_time": result.wall_time}
@@ -91,4 +118,4 @@ def _verdict(check: Check) -> str:
 
 
 def _allowed(check: Check) -> str:
-    return "reported" if check.allowed == inf else f"{check.allowed:g}"
+    return "shown" if check.allowed == inf else f"{check.allowed:g}"

@@ -5,13 +5,13 @@ import pytest
 
 from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture
+from engine.scene.material import named
 from engine.scene.scene import Sphere
+from engine.verification.material_point import MaterialPoint
+from engine.verification.problems.bar import Bar, Pull
 from tests.helpers.device import Array, worst
-from tests.helpers.material_point import Points
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
 from tests.helpers.parameter_sets import rules_of
-
-pytestmark = pytest.mark.usefixtures("taichi")
 
 BODY = Sphere(radius=1.0, particles=200)
 STEPS = 600
@@ -27,7 +27,8 @@ def drawn(name: str) -> Flaws:
 def engine_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     """Axial stress [Pa] and damage of every particle, shape [STEPS, particles]."""
     fracture = Fracture([BODY], rules_of(name), drawn(name))
-    points = Points(BODY.particles, strength=True, fracture=fracture, friction=FRICTION[name])
+    material = named("basalt", friction=FRICTION[name])
+    points = MaterialPoint(BODY.particles, material, strength=True, fracture=fracture)
     stress, damage = [], []
     for _ in range(STEPS):
         points.step(np.diag([rate, 0.0, 0.0]), dt)
@@ -39,7 +40,7 @@ def engine_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
 def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     """The same with principal log strains, which add up as all increments are along one axis."""
     flaws, count = drawn(name), BODY.particles
-    own = [flaws.strain[begin:end] for begin, end in zip(flaws.first[:-1], flaws.first[1:], strict=True)]
+    own = [flaws.strain[first:last] for first, last in zip(flaws.first[:-1], flaws.first[1:], strict=True)]
     total = np.array([len(strains) for strains in own])
     growth = CRACK_SPEED[name] * np.sqrt(LONGITUDINAL / RHO0) / (3.0 * (4.0 / 3.0 * np.pi / count) ** (1.0 / 3.0))
     e, E, root, axial = np.zeros((count, 3)), np.zeros(count), np.zeros(count), np.zeros(count)
@@ -65,6 +66,7 @@ def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     return np.array(stress), np.array(damage)
 
 
+@pytest.mark.usefixtures("taichi")
 @pytest.mark.parametrize("name", list(FRICTION))
 @pytest.mark.parametrize("rate", [0.1, 1.0, 100.0])
 def test_a_bar_breaks_as_an_independent_integration_says(name, rate):
@@ -77,3 +79,9 @@ def test_a_bar_breaks_as_an_independent_integration_says(name, rate):
     # round-off of 600 steps
     assert worst(stress, expected_stress, mean.max()) < 1e-12
     assert worst(damage, expected_damage, 1.0) < 1e-13
+
+
+@pytest.mark.parametrize("rate", Bar().rates)
+def test_bars_are_pulled_beyond_their_peak(rate):
+    stress = Pull(rate).reference()
+    assert stress.argmax() < 0.7 * len(stress)

@@ -8,10 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console
 
-from campaigns.estimate import count_by_state, duration, percent, time_left
-from campaigns.job_state import TrackedJob
-from campaigns.plan import decide
-from campaigns.progress import PlainLines, line, show_once, total
+from campaigns.job_state import TrackedJob, decide
+from campaigns.progress import PlainLines, count_by_state, duration, line, percent, show_once, time_left, total
 from engine.job.directory import WRITTEN, JobState, Status
 
 ANY_NUMBER = st.floats(allow_nan=True, allow_infinity=True)

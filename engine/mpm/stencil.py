@@ -1,0 +1,213 @@
+"""The nodes of every particle: where they lie in memory, their weights, and the sums over them.
+
+Each block of particles has its own copy of the nodes that it reaches (engine/mpm/blocks.py), so on the CPU no two
+threads ever add to the same number, and results do not depend on their count.
+"""
+
+import numpy as np
+import taichi as ti
+
+from engine.constants import BLOCK_EDGE
+from engine.device.backend import EPSILON, Real, mat3, on_gpu, vec3, vec4
+from engine.device.fields import capacity, overwrite
+from engine.mpm.blocks import Blocks
+from engine.mpm.spline import SECOND_MOMENT, WIDTH, first_moments, spline_weights, sum_of_squares
+from engine.state.particles import Particles
+
+EDGE_BITS = BLOCK_EDGE.bit_length() - 1
+"""Bits that count the nodes along an edge of a tile."""
+TILE = BLOCK_EDGE**3
+"""Nodes of a tile."""
+MARGIN = 1
+"""Cells that a particle may move out of its block before blocks are built anew."""
+SPAN = 2 * BLOCK_EDGE
+"""Nodes along an edge of a block's copy."""
+COPY = SPAN**3
+"""Nodes of a block's copy."""
+
+ROUND_OFF_MASS = 50.0 * EPSILON
+"""Ratio to a particle's mass below which the mass of others on its nodes is round-off.
+
+The smaller of both masses at a node bounds the momentum they can exchange there, so that none is lost with them.
+"""
+
+SURELY_SHARED = 1e-3
+"""Ratio of the mean mass of others on a particle's nodes to its own above which the nodes are surely shared."""
+
+
+@ti.data_oriented
+class Stencil:
+    """Blocks of the grid, with scatter to their nodes and gather from them.
+
+    Args:
+        particles: state of the particles.
+        dx: grid spacing [m].
+        blocks: number of blocks to make room for.
+
+    Attributes:
+        nodes: every node of every copy; momentum [kg m/s] and mass [kg] after the scatter, velocity [m/s] and mass
+            after the grid update.
+        shared_count: particles whose block, or one beside it, contains others; they come first in memory.
+        ballistic_count: particles alone in their block and in all blocks beside it.
+    """
+
+    def __init__(self, particles: Particles, dx: float, blocks: int) -> None:
+        self.particles, self.atomic, self.capacity = particles, on_gpu(), capacity(blocks)
+        self.dx = ti.field(ti.f64, ())
+        self.dx[None] = dx
+        self.block_count, self.tile_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
+        self.shared_count, self.ballistic_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
+        self.owner = ti.field(ti.i32, particles.x.shape)
+        self.origin = ti.Vector.field(3, ti.i32, self.capacity)
+        self.first = ti.field(ti.i32, self.capacity + 1)
+        self.source = ti.field(ti.i32, (8 * self.capacity, 8))
+        self.nodes = vec4.field(shape=self.capacity * COPY)
+
+    def set_blocks(self, blocks: Blocks) -> None:
+        """Store newly built blocks, in whose order the particles lie; there must be room for them."""
+        shared = int(blocks.first[-1])
+        counts = (self.block_count, self.tile_count, self.shared_count, self.ballistic_count)
+        sizes = (len(blocks.origin), len(blocks.source), shared, len(blocks.order) - shared)
+        for field, size in zip(counts, sizes, strict=True):
+            field[None] = size
+        owner = np.repeat(np.arange(len(blocks.origin), dtype=np.int32), np.diff(blocks.first))
+        overwrite(self.owner, owner)
+        overwrite(self.origin, blocks.origin)
+        overwrite(self.first, blocks.first)
+        overwrite(self.source, blocks.source)
+
+    @ti.func
+    def lowest_node(self, p):
+        """Return the grid coordinates of the lowest node of particle p."""
+        return ti.floor(self.particles.x[p] / self.dx[None] - 0.5, ti.i32)
+
+    @ti.func
+    def locate(self, p, b):
+        """Return the index of the lowest node of particle p in the copy of block b, and its distance in cells."""
+        base = self.lowest_node(p)
+        local = base - BLOCK_EDGE * self.origin[b] + MARGIN
+        f = ti.cast(self.particles.x[p] / self.dx[None] - ti.cast(base, ti.f64), Real)
+        return b * COPY + in_copy(local), f
+
+    @ti.func
+    def scatter(self, n, f, mass, momentum, affine):
+        """Add w (momentum + affine r) and w mass to the nodes of a particle.
+
+        The value at node (i, j, k) is that of the lowest node + i, j and k times the columns of `affine`, so the sum is
+        unrolled axis by axis.
+
+        Args:
+            n, f: lowest node, and distance of the particle from it in cells.
+            mass: [kg].
+            momentum: [kg m/s], shape [3].
+            affine: change of momentum per cell [kg m/s], shape [3, 3].
+        """
+        w = spline_weights(f)
+        lowest = vec4(momentum - affine @ f, mass)
+        by_x, by_y, by_z = vec4(affine[:, 0], 0.0), vec4(affine[:, 1], 0.0), vec4(affine[:, 2], 0.0)
+        for i in range(WIDTH):
+            for j in ti.static(range(WIDTH)):
+                weight = w[0, i] * w[1, j]
+                row = weight * (lowest + i * by_x + j * by_y)
+                row_by_z = weight * by_z
+                for k in ti.static(range(WIDTH)):
+                    self.add(n + (i * SPAN + j) * SPAN + k, w[2, k] * (row + k * row_by_z))
+
+    @ti.func
+    def add(self, n, value):
+        """Add a value to node n; other threads may do so at the same time on a GPU alone."""
+        if ti.static(self.atomic):
+            ti.atomic_add(self.nodes[n], value)
+        else:
+            self.nodes[n] = self.nodes[n] + value
+
+    @ti.func
+    def gather(self, n, f):
+        """Return sum w v [m/s], sum w m [kg] and sum w v r^T/(m2 dx) [1/s]: mean velocity, mass, and velocity gradient.
+
+        Args:
+            n, f: lowest node of the particle, and distance from it in cells.
+        """
+        w = spline_weights(f)
+        w_z, d_z = w[2, :], first_moments(w[2, :], f[2])
+        d_x, d_y = first_moments(w[0, :], f[0]), first_moments(w[1, :], f[1])
+        mean, by_x, by_y, by_z = vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0)
+        for i in range(WIDTH):
+            plane, plane_by_y, plane_by_z = vec4(0.0), vec4(0.0), vec4(0.0)
+            for j in ti.static(range(WIDTH)):
+                m = n + (i * SPAN + j) * SPAN
+                first, second, third = self.nodes[m], self.nodes[m + 1], self.nodes[m + 2]
+                row = w_z[0] * first + w_z[1] * second + w_z[2] * third
+                row_by_z = d_z[0] * first + d_z[1] * second + d_z[2] * third
+                plane += w[1, j] * row
+                plane_by_y += d_y[j] * row
+                plane_by_z += w[1, j] * row_by_z
+            mean += w[0, i] * plane
+            by_x += d_x[i] * plane
+            by_y += w[0, i] * plane_by_y
+            by_z += w[0, i] * plane_by_z
+        per_dx = 1.0 / (SECOND_MOMENT * ti.cast(self.dx[None], Real))
+        L = per_dx * mat3(by_x[0], by_y[0], by_z[0], by_x[1], by_y[1], by_z[1], by_x[2], by_y[2], by_z[2])
+        return vec3(mean[0], mean[1], mean[2]), mean[3], L
+
+    @ti.func
+    def is_ballistic(self, p, n, f, mean_mass):
+        """Return whether particle p shares no node with another.
+
+        Args:
+            p: index of the particle.
+            n, f: its lowest node, and its distance from it in cells.
+            mean_mass: mean mass of its nodes [kg].
+        """
+        mass, w, result = self.particles.mass[p], spline_weights(f), False
+        # what others have on average costs nothing to know, and settles it for almost all particles
+        if mean_mass - mass * sum_of_squares(w) <= SURELY_SHARED * mass:
+            result = self.shared_mass(mass, w, n) <= ROUND_OFF_MASS * mass
+        return result
+
+    @ti.func
+    def shared_mass(self, mass, w, n):
+        """Return the sum over the nodes of a particle of the smaller of its own and all others' mass [kg]."""
+        shared = ti.cast(0.0, Real)
+        for i in range(WIDTH):
+            for j in range(WIDTH):
+                for k in ti.static(range(WIDTH)):
+                    own = w[0, i] * w[1, j] * w[2, k] * mass
+                    shared += ti.min(own, self.nodes[n + (i * SPAN + j) * SPAN + k][3] - own)
+        return shared
+
+    @ti.func
+    def node_position(self, tile, n):
+        """Return the position of node n of a tile [m]."""
+        first = ti.Vector([0, 0, 0])
+        for corner in range(8):
+            b = self.source[tile, corner]
+            if b >= 0:
+                first = BLOCK_EDGE * (self.origin[b] + corner_coordinates(corner)) - MARGIN
+        return self.dx[None] * ti.cast(first + node_in_tile(n), ti.f64)
+
+    @ti.func
+    def within_margin(self, p):
+        """Return whether the copy of the block of particle p still contains all its nodes."""
+        local = self.lowest_node(p) - BLOCK_EDGE * self.particles.origin[p] + MARGIN
+        return local.min() >= 0 and local.max() <= SPAN - WIDTH
+
+
+@ti.func
+def node_in_tile(n):
+    """Return the coordinates of node n within its tile."""
+    return ti.Vector(
+        [(n >> (2 * EDGE_BITS)) & (BLOCK_EDGE - 1), (n >> EDGE_BITS) & (BLOCK_EDGE - 1), n & (BLOCK_EDGE - 1)]
+    )
+
+
+@ti.func
+def corner_coordinates(corner):
+    """Return the coordinates, 0 or 1, of one of the eight corners of a cube."""
+    return ti.Vector([corner >> 2, (corner >> 1) & 1, corner & 1])
+
+
+@ti.func
+def in_copy(node):
+    """Return the index in a block's copy of the node at these coordinates within it."""
+    return (node[0] * SPAN + node[1]) * SPAN + node[2]

@@ -1,0 +1,100 @@
+"""Limits of the time step: on the device for every step, on the host for the first (engine/physics.md, section 1)."""
+
+import math
+
+import numpy as np
+import taichi as ti
+from numpy.typing import NDArray
+
+from engine.device.backend import Real
+from engine.device.tensors import norm_squared, unpack
+from engine.mpm.spline import SECOND_MOMENT
+from engine.scene.bodies import Body
+from engine.scene.material import Material
+from engine.scene.scene import Scene
+from engine.state.particles import Arrays
+
+LARGEST_INCREMENT = 0.3
+"""Largest deformation |dt L| of one step [-]."""
+
+
+Limits = ti.types.struct(speed=Real, gradient2=Real, acceleration2=Real, diffusivity=Real)
+"""What bounds the next time step: the speed of the fastest signal, the motion of matter included [m/s], the squares of
+the velocity gradient [1/s^2] and of the acceleration [m^2/s^4], and the diffusivity of momentum [m^2/s].
+"""
+
+
+@ti.func
+def tightest(a, b):
+    """Return the limits that satisfy both."""
+    return Limits(
+        ti.max(a.speed, b.speed),
+        ti.max(a.gradient2, b.gradient2),
+        ti.max(a.acceleration2, b.acceleration2),
+        ti.max(a.diffusivity, b.diffusivity),
+    )
+
+
+@ti.func
+def rate_of(limits, cfl, dx):
+    """Return the inverse time step [1/s] that limits demand.
+
+    Args:
+        limits: of one particle or of many.
+        cfl: Courant number [-].
+        dx: grid spacing [m].
+    """
+    wave, deformation = limits.speed / (cfl * dx), ti.sqrt(limits.gradient2) / LARGEST_INCREMENT
+    fall, diffusion = ti.sqrt(ti.sqrt(limits.acceleration2) / dx), 6.0 * limits.diffusivity / (dx * dx)
+    return ti.max(wave, deformation, fall, diffusion)
+
+
+@ti.func
+def free_stress_gradient2(tau, rho0, dx):
+    """Return the square [1/s^2] of the velocity gradient that limits dt as a stress that nothing balances does.
+
+    It grows at |dL/dt| = |tau|/(rho0 m2 dx^2), with the second moment m2 of the spline, so |dL/dt| dt^2 < 0.3.
+
+    Args:
+        tau: Kirchhoff stress [Pa], six components.
+        rho0: density of the reference state [kg/m^3].
+        dx: grid spacing [m].
+    """
+    return LARGEST_INCREMENT * (ti.sqrt(norm_squared(unpack(tau))) / (SECOND_MOMENT * rho0 * dx * dx))
+
+
+def first_rate(scene: Scene, state: Arrays) -> float:
+    """Return the inverse time step [1/s] that a scene begins with.
+
+    Args:
+        scene: whose bodies are at rest density and move at full speed.
+        state: fields C, tau and body of every particle.
+    """
+    speeds = [_fastest(body, material) for body, material in zip(scene.bodies, scene.materials, strict=True)]
+    return max(max(speeds) / (scene.numerics.cfl * scene.dx), _rate_of_state(scene, state))
+
+
+def rate_of_motion(state: Arrays, dx: float) -> NDArray[np.float64]:
+    """Return the inverse time step [1/s] that the motion of each particle demands, shape [particle_count].
+
+    Args:
+        state: fields v and C of every particle.
+        dx: grid spacing [m].
+    """
+    strain = np.linalg.norm(state["C"], axis=(1, 2)) / LARGEST_INCREMENT
+    return np.asarray(np.maximum(np.linalg.norm(state["v"], axis=1) / dx, strain))
+
+
+def _rate_of_state(scene: Scene, state: Arrays) -> float:
+    """Inverse time step [1/s] that motion and stress inside particles demand."""
+    rho0 = np.array([body.material.rho0 for body in scene.bodies])[state["body"]]
+    stress = np.sqrt(np.sum(state["tau"] ** 2 * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0], axis=1))
+    growth = float((stress / rho0).max()) / (SECOND_MOMENT * scene.dx**2)
+    strain = float(np.linalg.norm(state["C"], axis=(1, 2)).max())
+    return max(strain / LARGEST_INCREMENT, math.sqrt(growth / LARGEST_INCREMENT))
+
+
+def _fastest(body: Body, material: Material) -> float:
+    """Highest signal speed [m/s] in an unstressed body."""
+    rotation = float(np.linalg.norm(body.spin)) * body.reach
+    return material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + rotation

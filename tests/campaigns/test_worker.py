@@ -1,0 +1,57 @@
+"""The engines of one worker."""
+
+import signal
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+import campaigns.worker
+from campaigns.worker import Outcome, Worker
+from engine.errors import ExitCode
+from engine.job.directory import JobDirectory, JobState, Status
+
+COUNTER = """
+import signal, sys, time
+from pathlib import Path
+job = Path(sys.argv[2])
+signal.signal(signal.SIGTERM, lambda number, frame: (job / "signals").open("a").write("x"))
+(job / "ready").touch()
+while not (job / "end").exists():
+    time.sleep(0.01)
+sys.exit(sys.stderr.write("first\\nlast line\\n") and 5)
+"""
+
+
+def wait_for(path: Path) -> None:
+    deadline = time.monotonic() + 20.0
+    while not path.exists():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def test_each_signal_reaches_an_engine_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "engine.py").write_text(COUNTER)
+    monkeypatch.setattr(campaigns.worker, "ENGINE", (sys.executable, str(tmp_path / "engine.py")))
+    job, worker = tmp_path / "job", Worker()
+    job.mkdir()
+    with ThreadPoolExecutor(1) as pool:
+        ended = pool.submit(worker.run, job, 1, "cpu", False)
+        wait_for(job / "ready")
+        assert worker.signal([tmp_path / "another"], signal.SIGTERM) == 0
+        assert worker.signal([job], signal.SIGTERM) == 1
+        wait_for(job / "signals")
+        assert worker.signal([job], signal.SIGTERM) == 1
+        time.sleep(0.1)
+        (job / "end").touch()
+        assert ended.result(timeout=20) == Outcome(5, "last line")
+    assert (job / "signals").read_text() == "x"
+    assert worker.signal([job], signal.SIGTERM) == 0
+
+
+def test_a_job_that_another_process_runs_is_left_to_it(tmp_path: Path) -> None:
+    JobDirectory(tmp_path).write_status(Status(state=JobState.RUNNING))
+    assert Worker().run(tmp_path, 1, "cpu", False) == Outcome(ExitCode.BUSY)
+    assert [path.name for path in tmp_path.iterdir()] == ["status.json"]
