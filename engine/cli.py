@@ -131,7 +131,7 @@ def accuracy(
     for run in sweep(names or TRADEOFFS, directory / "scenes.nc", workers):
         typer.echo(f"{run.scene:12} {run.setting:28} {run.value:>8}  error {run.error:9.3g}  {run.cpu_time:8.2f} s")
     runs = read(directory / "scenes.nc")
-    draw(runs, directory / "scenes.png")
+    draw(runs).savefig(directory / "scenes.png", dpi=80)
     typer.echo(orders(runs).to_string(index=False, float_format="%.2f"))
 
 

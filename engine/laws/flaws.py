@@ -32,8 +32,8 @@ def draw_flaws(body: Body, fracture: FractureRules, generator: np.random.Generat
     """
     owner = _owners(body.count, fracture, generator)
     number = np.arange(1, len(owner) + 1)
-    material = body.material
-    strain = (number / (material.weibull_k * body.volume)) ** (1.0 / material.weibull_m)
+    k, m = body.material.known("weibull_k"), body.material.known("weibull_m")
+    strain = (number / (k * body.volume)) ** (1.0 / m)
     order = np.argsort(owner, kind="stable")
     first = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=body.count))])
     return Flaws(first.astype(np.int32), strain[order])

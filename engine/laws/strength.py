@@ -19,8 +19,8 @@ class Strength:
     """
 
     def __init__(self, materials: Sequence[Material]) -> None:
-        constants = ("cohesion", "intact_friction", "strength_limit", "melt_energy", "damaged_friction")
-        self.table = per_body(**{name: [getattr(material, name) for material in materials] for name in constants})
+        constants = ("cohesion", "intact_friction", "strength_limit", "melt_energy", "friction")
+        self.table = per_body(**{name: [material.known(name) for material in materials] for name in constants})
 
     @ti.func
     def limit(self, p, P, E, D, body):
@@ -30,7 +30,7 @@ class Strength:
         friction, rise = m.intact_friction * confining, m.strength_limit - m.cohesion
         intact = m.cohesion + friction * rise / (rise + friction)
         intact *= ti.min(ti.max(1.0 - E / m.melt_energy, 0.0), 1.0)
-        damaged = ti.min(m.damaged_friction * confining, intact)
+        damaged = ti.min(m.friction * confining, intact)
         return (1.0 - D) * intact + D * damaged
 
 

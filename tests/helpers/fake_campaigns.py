@@ -5,7 +5,6 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.report.figures.style import Directories
 from engine.scene.collision import Collision
 from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
@@ -31,8 +30,3 @@ def grid(coords: Coordinates) -> list[dict[str, Any]]:
     """All combinations of some coordinates."""
     frame = pd.MultiIndex.from_product(list(coords.values()), names=list(coords)).to_frame(index=False)
     return [{str(key): value for key, value in row.items()} for row in frame.to_dict("records")]
-
-
-def job_directories(campaign_directory: Path, count: int) -> Directories:
-    """Directory of each of the first `count` jobs, by its id."""
-    return {str(number): campaign_directory / f"jobs/{number}" for number in range(count)}

@@ -36,7 +36,7 @@ def row(test: str, inputs: int, error: float) -> str:
 def main() -> int:
     """Run the laws' tests and print the table; the exit code is that of the tests."""
     code = pytest.main([str(next(TESTS.rglob(f"test_{law}.py"))) for law in LAWS])
-    print("\n| law | what holds | inputs | largest error |\n|---|---|---|---|")
+    print("\n| law | what is tested | inputs | largest error |\n|---|---|---|---|")
     for test, (inputs, error) in COMPARED.items():
         print(row(test, inputs, error))
     return int(code)

@@ -182,7 +182,7 @@ def test_results_are_cf_and_come_back_as_written(grid: Path) -> None:
     for name in (*OUTCOMES, "velocity", "angle", "end_time"):
         assert again[name].attrs["units"] and again[name].attrs["long_name"], name
     assert again.attrs["Conventions"].startswith("CF-")
-    assert again.attrs["parameter_set"] == "sugiura2018" and again.attrs["material.rho0"] == RHO0
+    assert again.attrs["parameter_set"] == "sugiura2018" and again.attrs["materials.basalt.rho0"] == RHO0
     assert again.attrs["viscosity"] == "none" and again.attrs["physics_version"] == 1
     assert "velocity" not in again.attrs
 

@@ -1,11 +1,50 @@
 """Kernels are translated faster, and what Taichi says of a wrong one stays the same."""
 
+import ast
+from importlib.util import find_spec, module_from_spec
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 import taichi as ti
 
-from engine.device import source_positions
+from engine.device.source_positions import source_position
+from engine.device.taichi_internals import ASTTransformerContext
 
-pytestmark = pytest.mark.usefixtures("taichi")
+SOURCE = ["def halved(x):", "    y = x / 2.0", "    return y"]
+FIRST, SECOND = ast.parse("\n".join(SOURCE)).body[0].body
+
+
+class Inlined:
+    """A function that is being translated, and how often its source was looked at."""
+
+    indent = 0
+
+    def __init__(self, file: str = "laws.py", lineno_offset: int = 10, name: str = "halved") -> None:
+        self.file, self.lineno_offset = file, lineno_offset
+        self.func = SimpleNamespace(func=SimpleNamespace(__name__=name))
+        self.looks = 0
+
+    @property
+    def src(self) -> list[str]:
+        self.looks += 1
+        return SOURCE
+
+
+def test_a_source_position_is_built_once_however_often_its_code_is_inlined() -> None:
+    first, again = Inlined(lineno_offset=77), Inlined(lineno_offset=77)
+    told = source_position(first, FIRST)
+    assert "laws.py" in told and "line 79" in told and "halved" in told and "y = x / 2.0" in told
+    assert first.looks > 0
+    assert source_position(again, FIRST) == source_position(first, FIRST) == told
+    assert again.looks == 0
+
+
+@pytest.mark.parametrize("other", [{"file": "mpm.py"}, {"lineno_offset": 20}, {"name": "doubled"}])
+def test_positions_of_other_code_are_told_apart(other: dict[str, object]) -> None:
+    here = source_position(Inlined(), FIRST)
+    assert source_position(Inlined(**other), FIRST) != here
+    assert source_position(Inlined(), SECOND) != here
 
 
 @ti.func
@@ -13,22 +52,9 @@ def halved(x):
     return x / 2.0
 
 
-def translate(times: int) -> float:
-    """What `halved`, inlined some times, makes of 1."""
-    result = ti.field(ti.f64, ())
-
-    @ti.kernel
-    def run():
-        x = 1.0
-        for _ in ti.static(range(times)):
-            x = halved(x)
-        result[None] = x
-
-    run()
-    return float(result[None])
-
-
 def error() -> str:
+    """What Taichi says of a kernel that uses an unknown name beside an inlined function."""
+
     @ti.kernel
     def run():
         for i in range(2):
@@ -39,21 +65,19 @@ def error() -> str:
     return str(raised.value)
 
 
-def test_a_source_position_is_built_once_however_often_its_code_is_inlined(monkeypatch: pytest.MonkeyPatch) -> None:
-    built = []
-    monkeypatch.setattr(source_positions, "_cache", {})
-    build = source_positions._build_text
-    monkeypatch.setattr(
-        source_positions, "_build_text", lambda context, node: built.append(node) or build(context, node)
-    )
-    assert translate(1) == 0.5
-    once = len(built)
-    assert translate(8) == 2.0**-8
-    assert once > 10 and len(built) == once
+def taichis_own_method() -> Any:
+    """`get_pos_info` as Taichi has it, from a second copy of its module: in the first one it is replaced."""
+    spec = find_spec(ASTTransformerContext.__module__)
+    assert spec and spec.loader
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.ASTTransformerContext.get_pos_info
 
 
+@pytest.mark.usefixtures("taichi")
 def test_errors_name_the_same_position_as_without_a_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = error(), error()
-    monkeypatch.setattr(source_positions.ASTTransformerContext, "get_pos_info", source_positions._build_text)
+    assert ASTTransformerContext.get_pos_info is source_position
+    monkeypatch.setattr(ASTTransformerContext, "get_pos_info", taichis_own_method())
     assert first == second == error()
     assert "nowhere" in first and "test_source_positions.py" in first

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from engine.scene.material import Material
-from engine.scene.tillotson import TillotsonParameters
+from engine.scene.material import named
 from engine.simulation.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift
 from engine.simulation.conservation import Row
 from tests.helpers.scenes import body, scene
@@ -21,8 +20,8 @@ def row(**energies: float) -> Row:
 
 
 def test_the_bound_of_compression_uses_the_energy_up_and_soft_matter_has_none() -> None:
-    assert Material().eos.cold_energy(2700.0, compression_limit(Material(), 5e6)) == pytest.approx(5e6)
-    soft = Material(eos=TillotsonParameters(A=1.0, B=0.0))
+    basalt, soft = named("basalt"), named("basalt", eos={"A": 1.0, "B": 0.0})
+    assert basalt.eos.cold_energy(2700.0, compression_limit(basalt, 5e6)) == pytest.approx(5e6)
     assert compression_limit(soft, 5e6) == np.inf
 
 
