@@ -1,7 +1,7 @@
-"""Command line of one simulation and of its verification: `python -m engine COMMAND`.
+"""Command line: `python -m engine COMMAND`.
 
-A command imports device modules only after it has chosen the precision (engine/device/options.py), so bad options and
-missing directories are reported at once.
+A command imports device modules after it has chosen the precision (engine/device/options.py); bad options and missing
+directories are therefore reported at once.
 """
 
 import logging
@@ -29,7 +29,7 @@ application = typer.Typer(
 )
 
 TABLE_WIDTH = 130
-"""Characters that a table of results needs, also where its output is not a terminal."""
+"""Least width of a printed table [characters], also where the output is not a terminal."""
 
 CORES = os.cpu_count() or 1
 
@@ -177,7 +177,7 @@ def _run(directory: Path, scene: Scene, threads: int, arch: Arch, checkpoint_int
 
 
 def progress_line(status: Status) -> str:
-    """Simulated time, rate and time left in one line."""
+    """Return simulated time, rate and time left in one line."""
     return (
         f"t = {status.time:.0f} of {status.end_time:.0f} s ({100.0 * status.progress:.0f} %), step {status.step}, "
         f"{status.steps_per_second:.0f} steps/s, {status.time_left:.0f} s left"

@@ -18,16 +18,16 @@ class DirectSum(SelfGravity):
         self.task = 1 if on_gpu() else TASK
 
     def arrange(self, x: Vectors) -> Indices:
-        """Return the particles in their own order, and padding up to a whole row."""
+        """Return the particles in their own order, and padding up to a whole row; shapes as `SelfGravity.arrange`."""
         return np.concatenate([np.arange(len(x)), np.full(-len(x) % LANES, ~0)])
 
     def solve(self, potential: bool) -> None:
-        """Sum over all pairs, sources always in the same order."""
+        """Sum over all pairs, sources always in the same order; argument as `SelfGravity.solve`."""
         self.sum_pairs(self.count, potential)
 
     @ti.kernel
     def sum_pairs(self, count: ti.i32, potential: ti.template()):
-        """Acceleration or potential of every particle."""
+        """Compute the acceleration or the potential of every particle."""
         for i in range((count + self.lanes - 1) // self.lanes * self.task):
             if i % self.task == 0:
                 t = i // self.task * self.lanes

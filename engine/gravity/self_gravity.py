@@ -24,6 +24,9 @@ class SelfGravity(ABC):
     a length leaves the range of single precision. Each component has a field of its own: the values of a row of targets
     are then contiguous, and their sums stay in registers.
 
+    In device functions t is the slot at which a row of targets begins; `potential`, known when they are compiled, says
+    whether potentials are summed, else accelerations.
+
     Args:
         particles: state of the particles.
         radius: radius of the ball [m]; the field is Newton's outside and linear inside.
@@ -60,7 +63,11 @@ class SelfGravity(ABC):
 
     @abstractmethod
     def solve(self, potential: bool) -> None:
-        """Compute the potential if asked for, else the acceleration, of all slots from their positions and gm."""
+        """Compute potential or acceleration of all slots from `x`, `y`, `z` and `gm`, in the solver's units.
+
+        Args:
+            potential: whether the potential is computed, else the acceleration.
+        """
 
     def accelerate(self, ahead: float) -> NetForce:
         """Set the acceleration to that at future positions, without net force and net torque.
@@ -95,7 +102,7 @@ class SelfGravity(ABC):
         return 0.5 * float(np.sum(mass * self.potentials(x, mass)))
 
     def _evaluate(self, x: Vectors, mass: Scalars, *wanted: ti.Field) -> Vectors:
-        """The wanted results of a solution in SI units, in the order of the particles."""
+        """Wanted results of a solution in SI units, shape [particle_count, number of results]."""
         slots = self.arrange(x)
         taken = slots >= 0
         particle = np.where(taken, slots, ~slots)
@@ -112,12 +119,12 @@ class SelfGravity(ABC):
 
     @ti.func
     def at(self, p):
-        """Acceleration of particle p [m/s^2], constant between two evaluations."""
+        """Return the acceleration of particle p of the last evaluation."""
         return self.acceleration[p]
 
     @ti.func
     def load(self, values: ti.template(), t):
-        """Values of the row of targets that begins at slot t."""
+        """Return the values of the row of targets that begins at slot t."""
         return self.row([values[t + i] for i in range(self.lanes)])
 
     @ti.func

@@ -1,4 +1,4 @@
-"""Where results come from: command, code, packages and device of every session of a job."""
+"""Provenance of results: command, code, packages and device of every session of a job."""
 
 import hashlib
 import json
@@ -20,7 +20,17 @@ PACKAGES = ("asteroid-collisions", "taichi", "numpy", "scipy", "xarray", "netCDF
 
 
 def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> None:
-    """Add this session to provenance.json."""
+    """Add this session to provenance.json.
+
+    Args:
+        job: the job directory.
+        scene: what is run.
+        arch: `cpu` or `cuda`.
+        threads: CPU threads.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
     sessions = [*_earlier_sessions(job), _session(arch, threads)]
     content = {
         "physics_version": PHYSICS_VERSION,
@@ -61,7 +71,7 @@ def _version(package: str) -> str:
 
 
 def _git_state() -> dict[str, object]:
-    """Commit of the code, whether it was changed since, and a hash of the change."""
+    """Commit of the code, whether the code differs from it, and a hash of the difference."""
     try:
         commit = _git("rev-parse", "HEAD").decode().strip()
         difference = _git("diff", "HEAD")

@@ -1,4 +1,4 @@
-"""Running one job directory: from its scene or checkpoint to its final state."""
+"""Session of a job: run it from its scene or its last checkpoint to its end."""
 
 import logging
 import signal
@@ -33,7 +33,7 @@ log = logging.getLogger("engine")
 
 @dataclass(frozen=True)
 class Options:
-    """How to run, without influence on results.
+    """Options of a session, without influence on results.
 
     Attributes:
         arch: `cpu` or `cuda`.
@@ -49,7 +49,14 @@ class Options:
 
 
 def run_job(directory: Path, options: Options) -> Status:
-    """Run or resume the job in `directory` and return how it stands: done, failed or interrupted.
+    """Run a job, from its last checkpoint if it has one.
+
+    Args:
+        directory: contains the scene.
+        options: of this session.
+
+    Returns:
+        How the job then stands: done, failed or interrupted.
 
     Raises:
         SceneError: the directory holds no valid scene.
@@ -72,7 +79,7 @@ def run_job(directory: Path, options: Options) -> Status:
 
 
 def _leave_word(job: JobDirectory, error: Exception) -> None:
-    """Say what ended a run that nothing foresaw, unless there is no room left for it."""
+    """Write an unexpected error to log and status, unless the disk is full."""
     log.exception("ended by an error")
     reason = " ".join(f"{type(error).__name__}: {error}".split())
     with suppress(OSError):
@@ -80,7 +87,19 @@ def _leave_word(job: JobDirectory, error: Exception) -> None:
 
 
 class Run:
-    """One session of a job."""
+    """One session of a job.
+
+    Args:
+        scene: what to simulate.
+        job: its directory, claimed by this process.
+        options: of this session.
+
+    Attributes:
+        simulation: the scene on the device.
+        history: rows so far, those of earlier sessions included.
+        history_due, snapshot_due: simulated time [s] of the next row and of the next snapshot.
+        guard: bounds of the run.
+    """
 
     def __init__(self, scene: Scene, job: JobDirectory, options: Options) -> None:
         self.scene, self.job, self.options = scene, job, options
@@ -96,7 +115,7 @@ class Run:
         self.stopping = False
 
     def to_end(self) -> Status:
-        """Go on until the end time, a fault, or a signal to stop."""
+        """Advance until the end time, a fault, or a signal to stop, and return how the job then stands."""
         previous = {number: signal.signal(number, self._stop) for number in (signal.SIGINT, signal.SIGTERM)}
         try:
             self._begin()
@@ -130,7 +149,7 @@ class Run:
         self._report("running")
 
     def _written_history(self) -> Dataset | None:
-        """What an earlier session wrote, always before its checkpoint; `None` where it cannot be read."""
+        """History that an earlier session wrote, always before its checkpoint; `None` if it cannot be read."""
         try:
             return read_dataset(self.job.history)
         except JobError:
@@ -162,7 +181,7 @@ class Run:
         self.guard.check_time_step(simulation.next_dt, simulation.time, simulation.particles)
 
     def _write_outputs(self) -> None:
-        """Record what has come due; the last state of all is always recorded."""
+        """Write the row and the snapshot that are due; a row is always due at the end time."""
         output, simulation = self.scene.output, self.simulation
         if simulation.time >= self.history_due or (simulation.finished and self.history_due < np.inf):
             self._append_history()
@@ -222,7 +241,7 @@ class Run:
         write_dataset(self.job.history, self.history.dataset(attributes))
 
     def _save(self) -> None:
-        """Write history, then checkpoint: a resumed run drops rows that are newer than its checkpoint."""
+        """Write the history, then the checkpoint: a resumed run drops rows that are later than its checkpoint."""
         _, state = self._checked()
         self._write_history()
         due = {"history_due": self.history_due, "snapshot_due": self.snapshot_due, "wall_time": self._wall_time()}
@@ -269,7 +288,7 @@ class Run:
         return self._report("interrupted", "stopped by a signal; run again to resume")
 
     def _fail(self, fault: Fault) -> Status:
-        """Keep the last checkpoint as it is and say what stopped the run."""
+        """Report the fault that stopped the run; the last checkpoint stays as it is."""
         if self.history.rows:
             self._write_history()
         log.error("failed: %s", fault)

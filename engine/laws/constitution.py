@@ -1,6 +1,6 @@
-"""The response of one particle to one step of deformation: the laws, put together.
+"""Response of one particle to one step of deformation, from all laws (engine/physics.md, sections 1 to 6).
 
-State of every particle: `j` = det F - 1 and Kirchhoff stress `tau` = J sigma; the laws hold what else they need.
+Every particle stores j = det F - 1 and the Kirchhoff stress tau = J sigma; laws store state of their own beside them.
 """
 
 import taichi as ti
@@ -12,9 +12,12 @@ from engine.state.particles import Particles
 
 @ti.func
 def strain_increment(H):
-    """Logarithmic strain sym(ln(I + H)) of the displacement gradient H, to second order.
+    """Return the logarithmic strain sym(ln(I + H)) of a step to second order, sym(H - H^2/2).
 
-    A step of rigid rotation stretches a little, -H^2 / 2: without it a spinning body would lose energy.
+    To first order a rigid rotation would strain matter, and a spinning body would lose internal energy.
+
+    Args:
+        H: displacement gradient dt L of the step [-].
     """
     return symmetric(H - 0.5 * (H @ H))
 
@@ -46,12 +49,18 @@ class Constitution:
 
     @ti.func
     def update(self, p, L, dt):
-        """Advance strain, energy, damage and stress of particle p over one step; returns wave speed and diffusivity.
+        """Advance strain, energy, damage and stress of particle p over one step.
+
+        Called once a step and particle, from grid to particles. Changes j, tau and the state of the laws of particle p
+        alone.
 
         Args:
             p: index of the particle.
             L: velocity gradient [1/s].
             dt: time step [s].
+
+        Returns:
+            Speed of the fastest wave [m/s] and diffusivity of momentum [m^2/s].
         """
         body = self.particles.body[p]
         rho0, H = self.eos.rho0(body), dt * L
@@ -79,20 +88,25 @@ class Constitution:
 
     @ti.func
     def signal_speed(self, p):
-        """Speed of the fastest wave [m/s] in particle p as it is."""
+        """Return the speed of the fastest wave [m/s] in the present state of particle p."""
         body, J = self.particles.body[p], 1.0 + self.particles.j[p]
         _, c2 = self.eos.evaluate(p, -self.particles.j[p] / J, self.energy.after(p, 0.0), body)
         return self.wave_speed(c2, body)
 
     @ti.func
     def wave_speed(self, c2, body):
-        """Speed of the fastest wave [m/s]."""
+        """Return the longitudinal speed sqrt(c^2 + 4 G / (3 rho0)) [m/s].
+
+        Args:
+            c2: squared speed of sound of the equation of state [m^2/s^2].
+            body: index of the body.
+        """
         return ti.sqrt(c2 + 4.0 / 3.0 * self.shear.modulus(body) / self.eos.rho0(body))
 
 
 @ti.func
 def ddot(S, T):
-    """S : T of two symmetric tensors."""
+    """Return S : T of two symmetric tensors."""
     return (
         S[0, 0] * T[0, 0]
         + S[1, 1] * T[1, 1]

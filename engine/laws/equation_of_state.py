@@ -25,5 +25,5 @@ class MaterialConstants:
 
     @ti.func
     def rho0(self, body):
-        """Density of the reference state [kg/m^3]."""
+        """Return the material's density of the reference state [kg/m^3]."""
         return self.table[body].rho0

@@ -1,4 +1,4 @@
-"""Shear stress of particles: Hencky's law up to the strength, or none (engine/physics.md, sections 1, 3 and 4).
+"""Shear stress: Hencky's law up to the strength, or none (engine/physics.md, sections 1, 3 and 4; Klar et al. 2016).
 
 The state is b - I, with b = J^(-2/3) F F^T the isochoric left Cauchy-Green tensor of the elastic strain. Storing b - I
 and j = J - 1 instead of F keeps the digits of strains of 1e-6; an isotropic law does not see the rotation in F.
@@ -57,7 +57,7 @@ def deform(b_minus_I, H, growth):
 
 @ti.data_oriented
 class Hencky:
-    """Deviatoric stress linear in the logarithmic strain, limited by strength.
+    """Hencky's law: deviatoric stress linear in the logarithmic strain, limited by strength.
 
     Args:
         particles: state of the particles.
@@ -95,7 +95,7 @@ class Hencky:
 
 @ti.data_oriented
 class Fluid:
-    """Matter without shear stress."""
+    """No shear stress."""
 
     @ti.func
     def stress(self, p, H, growth, J, P, E, D, body):

@@ -12,7 +12,7 @@ from engine.scene.material import Material
 
 @ti.data_oriented
 class Strength:
-    """Largest shear stress of intact, damaged and partly damaged rock.
+    """Largest sqrt(J2) of intact, damaged and partly damaged rock.
 
     Args:
         materials: one per body.
@@ -36,7 +36,7 @@ class Strength:
 
 @ti.data_oriented
 class Unlimited:
-    """A solid that never yields."""
+    """Elasticity without yielding."""
 
     @ti.func
     def limit(self, p, P, E, D, body):

@@ -23,8 +23,8 @@ class Cost:
     """Time of a repeated task.
 
     Attributes:
-        calls: how often it ran.
-        wall, cpu: wall time, and CPU time of all threads [s].
+        calls: number of runs.
+        wall, cpu: wall time and CPU time of all threads [s].
     """
 
     calls: int = 0
@@ -44,14 +44,14 @@ class Cost:
 
 @dataclass
 class Measurement:
-    """Steps of a scene and their cost.
+    """Cost of some steps of a scene.
 
     Attributes:
-        simulation: in the state after them.
-        begun: simulated time [s] before the first.
-        steps: how many were measured.
-        whole: cost of all of them, kernels and host.
-        kernels: cost of every kernel that ran, by part and name.
+        simulation: in the state after the steps.
+        begun: simulated time [s] before the first step.
+        steps: number of steps.
+        whole: cost of all steps, kernels and host.
+        kernels: cost of every kernel, by part and name.
     """
 
     simulation: Simulation
@@ -66,8 +66,9 @@ def measure(source: Path, steps: int, arch: str, threads: int) -> Measurement:
 
     Args:
         source: a scene file or a job directory.
-        steps: how many steps to measure, after one that compiles what it needs.
-        arch, threads: device and CPU threads.
+        steps: number of steps to measure, after one that compiles.
+        arch: `cpu` or `cuda`.
+        threads: CPU threads.
 
     Raises:
         SceneError: the scene cannot be read.

@@ -1,4 +1,4 @@
-"""A scene in motion: assembled from the parts it names, advanced from one pause to the next."""
+"""Simulation of a scene: its parts on the device, its steps, and the events between them."""
 
 import math
 from collections.abc import Mapping
@@ -25,7 +25,7 @@ from engine.state.clock import FAULT_NONE, Clock
 from engine.state.particles import Arrays, Particles
 
 LAUNCHES = 64
-"""Most steps launched before the host looks whether they ran."""
+"""Most steps that are launched before the host checks whether they ran."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,15 @@ class Simulation:
 
     Args:
         scene: what to simulate; Taichi must have been started.
+
+    Attributes:
+        particles, clock: state on the device.
+        constitution, gravity, walls: physics of the scene.
+        stencil, transfer: the grid and the kernels of a step.
+        events: times of what happens between steps.
+
+    Raises:
+        SceneError: this process has another precision than the scene.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -89,9 +98,13 @@ class Simulation:
         self.clock.rate[None] = first_rate(self.scene, self.particles.read("C", "tau", "body"))
 
     def advance(self, until: float, steps: int = LAUNCHES) -> None:
-        """Take at most some `steps`, none of them after the first that reaches `until` [s].
+        """Advance by some steps, at most to the first that reaches a time.
 
-        Which steps are taken depends on the scene alone, never on how they are spread over calls.
+        The steps depend on the scene alone, not on the calls of this method.
+
+        Args:
+            until: simulated time [s].
+            steps: most steps.
 
         Raises:
             GuardFault: a particle left the range in which the equations hold.

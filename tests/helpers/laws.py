@@ -19,7 +19,8 @@ LAWS = {
     "viscosity": "viscosity",
     "constitution": "all laws of a particle",
     "bar": "bar of breaking particles",
-    "self_gravity": "sum over pairs",
+    "direct_sum": "sum over pairs",
+    "self_gravity": "gravity of a sphere",
     "transfer": "whole step",
 }
 """Test modules of the laws, in the order of engine/physics.md."""
