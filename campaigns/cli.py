@@ -15,7 +15,7 @@ from campaigns.directory import CampaignDirectory
 from campaigns.expansion import expand
 from campaigns.job_state import TrackedJob, decide, states
 from campaigns.progress import count_by_state, display, show_once
-from campaigns.runner import Run
+from campaigns.runner import CampaignRun
 from campaigns.study import Study, find_study, read_study
 from engine.device.options import Arch
 from engine.errors import ExitCode, JobError, SceneError, in_words
@@ -78,7 +78,7 @@ def run(
         slots, threads = share_cores(waiting, workers, threads_per_job)
         with connect(Resources(slots, threads, scheduler, slurm)) as client, display(Console()) as show:
             directory.write(campaign)
-            jobs = Run(directory, campaign, client, threads, arch, retry_failed).watch(show)
+            jobs = CampaignRun(directory, campaign, client, threads, arch, retry_failed).watch(show)
         _finish(directory, jobs, _arguments(study, runs))
     except KeyboardInterrupt:
         raise typer.Exit(

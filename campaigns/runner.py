@@ -12,7 +12,7 @@ from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
 from campaigns.job_state import TrackedJob, decide, states
 from campaigns.progress import Show
-from campaigns.worker import Outcome, run_job, signal_jobs
+from campaigns.worker import EngineExit, run_job, signal_jobs
 from engine.errors import ExitCode
 from engine.job.directory import JobState
 
@@ -25,7 +25,7 @@ IDLE_POLLS = 3
 
 
 @dataclass
-class Run:
+class CampaignRun:
     """One attempt at every unfinished job of a campaign.
 
     Attributes:
@@ -43,7 +43,7 @@ class Run:
     arch: str
     retry_failed: bool
     _futures: dict[Path, Future] = field(default_factory=dict)
-    _outcomes: dict[Path, Outcome] = field(default_factory=dict)
+    _outcomes: dict[Path, EngineExit] = field(default_factory=dict)
 
     def watch(self, show: Show) -> list[TrackedJob]:
         """Run until no job is left to run and none is being run by another process, and return how they stand.
@@ -106,13 +106,13 @@ class Run:
                 self.client.run(signal_jobs, paths, signal.SIGKILL)
 
 
-def _outcome(future: Future) -> Outcome:
+def _outcome(future: Future) -> EngineExit:
     """How a task ended that the cluster is done with."""
     match future.status:
         case "finished":
-            outcome: Outcome = future.result()
+            outcome: EngineExit = future.result()
             return outcome
         case "error":
-            return Outcome(1, f"could not be run: {future.exception()}")
+            return EngineExit(1, f"could not be run: {future.exception()}")
         case _:
-            return Outcome(1, f"could not be run: {future.status} by the cluster")
+            return EngineExit(1, f"could not be run: {future.status} by the cluster")

@@ -23,7 +23,7 @@ _TAIL = 2000
 
 
 @dataclass(frozen=True)
-class Outcome:
+class EngineExit:
     """How a job ended on a worker.
 
     Attributes:
@@ -45,14 +45,14 @@ class Worker(WorkerPlugin):  # type: ignore[misc]  # dask has no types
         self._running: dict[Path, subprocess.Popen[bytes]] = {}
         self._signalled: set[tuple[subprocess.Popen[bytes], int]] = set()
 
-    def run(self, directory: Path, threads: int, arch: str, retry_failed: bool) -> Outcome:
+    def run(self, directory: Path, threads: int, arch: str, retry_failed: bool) -> EngineExit:
         """Run the engine on a job, unless nothing is left to do there; arguments as `run_job`."""
         if not decide(status_of(directory), retry_failed).runs:
-            return Outcome(ExitCode.BUSY)
+            return EngineExit(ExitCode.BUSY)
         command = [*ENGINE, "run", str(directory), "--threads", str(threads), "--arch", arch]
         with tempfile.TemporaryFile() as errors, self._started(directory, command, errors) as process:
             code = process.wait()
-            return Outcome(code, _reason(code, errors))
+            return EngineExit(code, _reason(code, errors))
 
     def signal(self, directories: Collection[Path], number: int) -> int:
         """Send a signal to the engines of these jobs, to each engine once, and return how many of them still run.
@@ -90,7 +90,7 @@ class DaskWorker(Protocol):
     plugins: dict[str, Worker]
 
 
-def run_job(directory: Path, threads: int, arch: str, retry_failed: bool) -> Outcome:
+def run_job(directory: Path, threads: int, arch: str, retry_failed: bool) -> EngineExit:
     """Run the engine on a job; a task of the worker that executes it.
 
     Args:

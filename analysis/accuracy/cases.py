@@ -17,7 +17,7 @@ SEVERAL = "several"
 
 
 @dataclass(frozen=True)
-class Case:
+class VariedCase:
     """One case of a campaign.
 
     Attributes:
@@ -31,7 +31,7 @@ class Case:
     particles: int
 
 
-def cases(campaign: KeptCampaign) -> dict[str, Case]:
+def cases(campaign: KeptCampaign) -> dict[str, VariedCase]:
     """Return all cases of a campaign by name.
 
     Raises:
@@ -48,10 +48,10 @@ def cases(campaign: KeptCampaign) -> dict[str, Case]:
     return {name: _case(table, tables[BASE]) for name, table in tables.items()}
 
 
-def _case(table: dict[str, Scalar], base: dict[str, Scalar]) -> Case:
+def _case(table: dict[str, Scalar], base: dict[str, Scalar]) -> VariedCase:
     keys = [key for key in table | base if key != "seed" and _value(table, key) != _value(base, key)]
     setting = keys[0] if len(keys) == 1 else SEVERAL if keys else NONE
-    return Case(setting, table.get(setting, NONE), int(table["particles"]))
+    return VariedCase(setting, table.get(setting, NONE), int(table["particles"]))
 
 
 def _value(table: dict[str, Scalar], key: str) -> Scalar:

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from analysis.accuracy.cases import BASE, RESOLUTION, Case
+from analysis.accuracy.cases import BASE, RESOLUTION, VariedCase
 from analysis.accuracy.orders import orders
 from analysis.results.statistics import Difference, count, difference, interval, paired_difference, resolved
 from analysis.results.variables import DRIFTS, OUTCOMES
@@ -20,7 +20,7 @@ _PAIRED = (
 _RESOLVED = "1 where the difference exceeds its interval, 0 where not"
 
 
-def accuracy(results: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
+def accuracy(results: xr.Dataset, cases: dict[str, VariedCase]) -> xr.Dataset:
     """Return outcomes and cost of every case with a finished run, and differences to the base and the finest case.
 
     Args:
@@ -39,7 +39,7 @@ def accuracy(results: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
     return data.assign(orders(data, finest)).assign_attrs(finest=finest)
 
 
-def _described(done: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
+def _described(done: xr.Dataset, cases: dict[str, VariedCase]) -> xr.Dataset:
     chosen = [cases[str(name)] for name in done["case"].values]
     spacing = np.array([(4.0 * np.pi / 3.0 / case.particles) ** (1.0 / 3.0) for case in chosen])
     runs = count(done["mass_ratio"]).assign_attrs(long_name="runs that are done", units="1")
@@ -62,7 +62,7 @@ def _origin(done: xr.Dataset) -> dict[str, object]:
     return {**done.attrs, **{name: values[0] for name, values in known.items() if len(np.unique(values)) == 1}}
 
 
-def _finest(names: list[str], cases: dict[str, Case]) -> str:
+def _finest(names: list[str], cases: dict[str, VariedCase]) -> str:
     return max((name for name in names if cases[name].setting in RESOLUTION), key=lambda name: cases[name].particles)
 
 

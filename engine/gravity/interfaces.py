@@ -5,7 +5,7 @@ from typing import Protocol
 from engine.arrays import Scalars, Vectors
 
 
-class Gravity(Protocol):
+class GravityField(Protocol):
     """Acceleration of particles by gravity: `SelfGravity`, `UniformGravity` or `NoGravity`."""
 
     def at(self, p):

@@ -70,7 +70,7 @@ def run_job(directory: Path, options: Options) -> Status:
             return status
         backend.start(options.arch, options.threads)
         try:
-            return Run(scene, job, options).to_end()
+            return Session(scene, job, options).to_end()
         except (SceneError, JobError):
             raise
         except Exception as error:
@@ -86,7 +86,7 @@ def _leave_word(job: JobDirectory, error: Exception) -> None:
         job.write_status(replace(job.status(), state="interrupted", reason=reason))
 
 
-class Run:
+class Session:
     """One session of a job.
 
     Args:

@@ -8,7 +8,7 @@ import taichi.math as tm
 
 from engine.device.backend import EPSILON
 from engine.device.tensors import determinant_increment, identity, norm_squared, symmetric, unpack
-from engine.gravity.interfaces import Gravity
+from engine.gravity.interfaces import GravityField
 from engine.laws.constitution import Constitution
 from engine.mpm.interfaces import Boundary
 from engine.mpm.spline import SECOND_MOMENT
@@ -38,7 +38,7 @@ class Apic:
     """
 
     def __init__(
-        self, particles: Particles, constitution: Constitution, gravity: Gravity, walls: Boundary, clock: Clock
+        self, particles: Particles, constitution: Constitution, gravity: GravityField, walls: Boundary, clock: Clock
     ) -> None:
         self.particles, self.constitution, self.gravity = particles, constitution, gravity
         self.walls, self.clock = walls, clock

@@ -5,7 +5,7 @@ For physics that a scene leaves out a null part is built, without fields and wit
 
 from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
-from engine.gravity.interfaces import Gravity
+from engine.gravity.interfaces import GravityField
 from engine.gravity.uniform import NoGravity, UniformGravity
 from engine.laws.algebraic import Algebraic
 from engine.laws.constitution import Constitution
@@ -43,7 +43,7 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
     )
 
 
-def gravity(scene: Scene, particles: Particles) -> Gravity:
+def gravity(scene: Scene, particles: Particles) -> GravityField:
     """Return self-gravity by a tree, by the sum over all pairs at opening angle 0, uniform gravity, or none.
 
     Args:

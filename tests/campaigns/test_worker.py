@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import campaigns.worker
-from campaigns.worker import Outcome, Worker
+from campaigns.worker import EngineExit, Worker
 from engine.errors import ExitCode
 from engine.job.directory import JobDirectory, JobState, Status
 
@@ -46,12 +46,12 @@ def test_each_signal_reaches_an_engine_once(tmp_path: Path, monkeypatch: pytest.
         assert worker.signal([job], signal.SIGTERM) == 1
         time.sleep(0.1)
         (job / "end").touch()
-        assert ended.result(timeout=20) == Outcome(5, "last line")
+        assert ended.result(timeout=20) == EngineExit(5, "last line")
     assert (job / "signals").read_text() == "x"
     assert worker.signal([job], signal.SIGTERM) == 0
 
 
 def test_a_job_that_another_process_runs_is_left_to_it(tmp_path: Path) -> None:
     JobDirectory(tmp_path).write_status(Status(state=JobState.RUNNING))
-    assert Worker().run(tmp_path, 1, "cpu", False) == Outcome(ExitCode.BUSY)
+    assert Worker().run(tmp_path, 1, "cpu", False) == EngineExit(ExitCode.BUSY)
     assert [path.name for path in tmp_path.iterdir()] == ["status.json"]

@@ -27,7 +27,7 @@ ATTRIBUTES = {
 
 
 @dataclass(frozen=True)
-class Run:
+class Trial:
     """One scene with one setting varied.
 
     Attributes:
@@ -45,7 +45,7 @@ class Run:
     cpu_time: float
 
 
-def measure(scene: str, setting: str, value: Setting) -> Run:
+def measure(scene: str, setting: str, value: Setting) -> Trial:
     """Run one scene with one setting varied; this process must not have started Taichi before."""
     backend.start(threads=1)
     tradeoff = TRADEOFFS[scene]
@@ -54,10 +54,10 @@ def measure(scene: str, setting: str, value: Setting) -> Run:
     else:
         harness, resolution = Harness({setting: value}), tradeoff.resolutions[0]
     error = tradeoff.error(harness, resolution)
-    return Run(scene, setting, str(value), error, harness.cpu_time)
+    return Trial(scene, setting, str(value), error, harness.cpu_time)
 
 
-def sweep(scenes: Iterable[str], path: Path, workers: int) -> Iterator[Run]:
+def sweep(scenes: Iterable[str], path: Path, workers: int) -> Iterator[Trial]:
     """Do all runs that a file lacks, each in a process of its own; yield each as it ends.
 
     Args:
@@ -75,14 +75,14 @@ def sweep(scenes: Iterable[str], path: Path, workers: int) -> Iterator[Run]:
         yield run
 
 
-def _measure_all(runs: list[tuple[str, str, Setting]], workers: int) -> Iterator[Run]:
+def _measure_all(runs: list[tuple[str, str, Setting]], workers: int) -> Iterator[Trial]:
     """The runs as they end."""
     with ThreadPoolExecutor(workers) as threads:
         for job in as_completed([threads.submit(_measure_apart, run) for run in runs]):
             yield job.result()
 
 
-def _measure_apart(run: tuple[str, str, Setting]) -> Run:
+def _measure_apart(run: tuple[str, str, Setting]) -> Trial:
     return in_own_process(_precision(run), measure, *run)
 
 

@@ -28,7 +28,7 @@ def as_it_is(scene: Scene) -> Arrays:
 
 
 @dataclass(frozen=True)
-class Case:
+class ExtremeCase:
     """A scene, the state from which it starts, and whether a guard may stop it.
 
     Attributes:

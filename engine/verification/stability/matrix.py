@@ -11,11 +11,11 @@ from engine.device import backend
 from engine.job.directory import JobDirectory
 from engine.verification.processes import in_own_process
 from engine.verification.stability.cases import all_cases
-from engine.verification.stability.outcome import Outcome, failure, run_case
+from engine.verification.stability.outcome import CaseResult, failure, run_case
 from engine.verification.stability.von_neumann import BLOCKS, Block, Limit
 
 
-def run_all(jobs: Path, workers: int) -> Iterator[Outcome]:
+def run_all(jobs: Path, workers: int) -> Iterator[CaseResult]:
     """Run every case; yield its outcome, in the order of the matrix.
 
     Args:
@@ -26,7 +26,7 @@ def run_all(jobs: Path, workers: int) -> Iterator[Outcome]:
         yield from threads.map(partial(run_apart, jobs), range(len(all_cases())))
 
 
-def run_apart(jobs: Path, index: int) -> Outcome:
+def run_apart(jobs: Path, index: int) -> CaseResult:
     """Run one case, by its index in the matrix, in a process of its own and of its precision."""
     case = all_cases()[index]
     try:
@@ -35,7 +35,7 @@ def run_apart(jobs: Path, index: int) -> Outcome:
         return failure(case, "its process died")
 
 
-def _run_indexed(index: int, directory: Path) -> Outcome:
+def _run_indexed(index: int, directory: Path) -> CaseResult:
     """Run a case known by its index: cases contain functions, which cannot be passed to another process."""
     directory.mkdir(parents=True)
     logging.basicConfig(filename=JobDirectory(directory).log, level=logging.INFO, format="%(asctime)s %(message)s")

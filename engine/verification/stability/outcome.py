@@ -9,17 +9,17 @@ from engine.device import backend
 from engine.errors import GuardFault
 from engine.job.checkpoint import load_checkpoint, save_checkpoint
 from engine.job.directory import JobDirectory, Status
-from engine.job.session import Options, Run
+from engine.job.session import Options, Session
 from engine.simulation.conservation import as_row
 from engine.simulation.guard import require_finite
-from engine.verification.stability.case import Case
+from engine.verification.stability.case import ExtremeCase
 from engine.verification.stability.measures import Measures, measures
 
 STABLE, STOPPED, FAILED = "stable", "stopped", "failed"
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CaseResult:
     """How a case ended.
 
     Attributes:
@@ -52,12 +52,12 @@ class Outcome:
         return self.verdict == STABLE or (self.verdict == STOPPED and not self.physical)
 
 
-def failure(case: Case, reason: str) -> Outcome:
+def failure(case: ExtremeCase, reason: str) -> CaseResult:
     """Return the outcome of a case that left nothing to measure."""
-    return Outcome(case.group, case.name, case.scene.numerics.precision, case.physical, FAILED, reason)
+    return CaseResult(case.group, case.name, case.scene.numerics.precision, case.physical, FAILED, reason)
 
 
-def run_case(case: Case, directory: Path) -> Outcome:
+def run_case(case: ExtremeCase, directory: Path) -> CaseResult:
     """Run a case as a job of its own in this process and return how it ended; an exception is a failure.
 
     Args:
@@ -70,18 +70,18 @@ def run_case(case: Case, directory: Path) -> Outcome:
         return failure(case, f"{type(error).__name__}: {error}")
 
 
-def _run(case: Case, directory: Path) -> Outcome:
+def _run(case: ExtremeCase, directory: Path) -> CaseResult:
     backend.start("cpu", threads=1)
-    run = Run(case.scene, JobDirectory(directory), Options(checkpoint_interval=1.0))
+    run = Session(case.scene, JobDirectory(directory), Options(checkpoint_interval=1.0))
     _save_start(case, run)
     status = run.to_end()
     extremes = measures(run.guard, run.history.rows, backend.EPSILON)
     verdict, reason = _verdict(run, status, extremes)
     known = (case.group, case.name, case.scene.numerics.precision, case.physical)
-    return Outcome(*known, verdict, reason, status.step, status.progress, status.cpu_time, extremes)
+    return CaseResult(*known, verdict, reason, status.step, status.progress, status.cpu_time, extremes)
 
 
-def _save_start(case: Case, run: Run) -> None:
+def _save_start(case: ExtremeCase, run: Session) -> None:
     """Write the changed initial state as a checkpoint, from which the run then starts."""
     start = case.scene.start_time
     run.simulation.start(**case.changes(case.scene))
@@ -91,7 +91,7 @@ def _save_start(case: Case, run: Run) -> None:
     save_checkpoint(run.job, run.simulation, times)
 
 
-def _verdict(run: Run, status: Status, extremes: Measures) -> tuple[str, str]:
+def _verdict(run: Session, status: Status, extremes: Measures) -> tuple[str, str]:
     if status.state == "done":
         broken = extremes.broken()
         return (FAILED, f"{broken}, and no guard noticed") if broken else (STABLE, "")
@@ -100,7 +100,7 @@ def _verdict(run: Run, status: Status, extremes: Measures) -> tuple[str, str]:
     return FAILED, f"{status.reason}; no guard, or no checkpoint to go on from"
 
 
-def _checkpoint_is_good(run: Run) -> bool:
+def _checkpoint_is_good(run: Session) -> bool:
     """Whether the checkpoint of a run that was stopped can be read and contains a state that the guard passes."""
     simulation = run.simulation
     if load_checkpoint(run.job, simulation) is None:

@@ -12,7 +12,7 @@ from engine import PHYSICS_VERSION
 from engine.job.storage import write_dataset
 from engine.verification.stability.heat_map import draw
 from engine.verification.stability.measures import as_numbers
-from engine.verification.stability.outcome import FAILED, STABLE, STOPPED, Outcome
+from engine.verification.stability.outcome import FAILED, STABLE, STOPPED, CaseResult
 from engine.verification.stability.von_neumann import Limit
 
 ATTRIBUTES = {
@@ -37,7 +37,7 @@ ATTRIBUTES = {
 }
 
 
-def dataset(outcomes: list[Outcome], limits: list[Limit]) -> xr.Dataset:
+def dataset(outcomes: list[CaseResult], limits: list[Limit]) -> xr.Dataset:
     """Return the data set of all outcomes, dimension `case`, and limits of the time step, dimension `block`."""
     rows = [_row(outcome) for outcome in outcomes]
     columns: dict[str, tuple[str, NDArray[np.generic]]]
@@ -52,7 +52,7 @@ def dataset(outcomes: list[Outcome], limits: list[Limit]) -> xr.Dataset:
     return result.set_coords(["group", "name", "precision"])
 
 
-def _row(outcome: Outcome) -> dict[str, object]:
+def _row(outcome: CaseResult) -> dict[str, object]:
     own = {field.name: getattr(outcome, field.name) for field in fields(outcome) if field.name != "measures"}
     return {**own, "physical": np.int8(outcome.physical), **as_numbers(outcome.measures)}
 

@@ -10,7 +10,7 @@ from matplotlib.colors import same_color
 from typer.testing import CliRunner
 
 from analysis.__main__ import app
-from analysis.accuracy.cases import Case, cases
+from analysis.accuracy.cases import VariedCase, cases
 from analysis.accuracy.figure import error_against_cost, errors
 from analysis.accuracy.measure import accuracy
 from analysis.accuracy.report import markdown
@@ -27,9 +27,9 @@ COUNTS = {"particles500": 500, "base": 1000, "particles4000": 4000, "particles32
 SCATTER = np.array([-1.0, 0.0, 1.0])
 
 
-def known() -> dict[str, Case]:
-    resolutions = {name: Case("none" if name == "base" else "particles", n, n) for name, n in COUNTS.items()}
-    return resolutions | {"cfl": Case("numerics.cfl", 0.9, 1000)}
+def known() -> dict[str, VariedCase]:
+    resolutions = {name: VariedCase("none" if name == "base" else "particles", n, n) for name, n in COUNTS.items()}
+    return resolutions | {"cfl": VariedCase("numerics.cfl", 0.9, 1000)}
 
 
 def results(scatter: float) -> xr.Dataset:
@@ -96,7 +96,7 @@ def test_the_shipped_study_varies_one_setting_a_case_but_for_fine_gravity(tmp_pa
     found = cases(read_campaign(tmp_path, KeptCampaign))
     assert found["base"].setting == "none"
     assert [name for name, case in found.items() if case.setting == "several"] == ["particles5000-fine-gravity"]
-    assert found["viscosity.shear350000"] == Case("viscosity.shear", 3.5e5, 1000)
+    assert found["viscosity.shear350000"] == VariedCase("viscosity.shear", 3.5e5, 1000)
     assert found["particles20000"].particles == 20000
 
 

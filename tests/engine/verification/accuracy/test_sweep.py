@@ -10,7 +10,7 @@ import pytest
 from engine.scene.scene import Scene, Sphere
 from engine.verification.accuracy import figure, sweep
 from engine.verification.accuracy.settings import TRADEOFFS, Tradeoff
-from engine.verification.accuracy.sweep import Run, measure, orders, read, write
+from engine.verification.accuracy.sweep import Trial, measure, orders, read, write
 from engine.verification.harness import Harness, Setting, altered
 from engine.verification.problems.column import StandingWave
 
@@ -48,18 +48,20 @@ def test_each_run_varies_one_setting_at_the_first_resolution(monkeypatch: pytest
 
 def test_runs_that_a_file_contains_are_not_repeated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(TRADEOFFS, "known", known((16, 8), {}))
-    monkeypatch.setattr(sweep, "in_own_process", lambda precision, function, *run: Run(*run[:2], str(run[2]), 1.0, 2.0))
+    monkeypatch.setattr(
+        sweep, "in_own_process", lambda precision, function, *run: Trial(*run[:2], str(run[2]), 1.0, 2.0)
+    )
     path = tmp_path / "scenes.nc"
-    write(path, pd.DataFrame([asdict(Run("known", "cells", "16", 3.0, 4.0))]))
+    write(path, pd.DataFrame([asdict(Trial("known", "cells", "16", 3.0, 4.0))]))
     assert [run.value for run in sweep.sweep(["known"], path, 1)] == ["8"]
     assert read(path)["error"].tolist() == [3.0, 1.0]
 
 
 def test_orders_are_those_of_the_data():
-    wave = [Run("wave", "cells", str(n), 5.0 / n**2, 1.0) for n in (8, 16, 32)]
-    steps = [Run("wave", "numerics.cfl", str(cfl), 3.0 * cfl, 1.0) for cfl in (0.1, 0.5)]
-    ball = [Run("ball", "particles", str(n), n ** (-1.0 / 3.0), 1.0) for n in (100, 1000)]
-    other = [Run("wave", "numerics.precision", name, 1.0, 1.0) for name in ("f64", "f32")]
+    wave = [Trial("wave", "cells", str(n), 5.0 / n**2, 1.0) for n in (8, 16, 32)]
+    steps = [Trial("wave", "numerics.cfl", str(cfl), 3.0 * cfl, 1.0) for cfl in (0.1, 0.5)]
+    ball = [Trial("ball", "particles", str(n), n ** (-1.0 / 3.0), 1.0) for n in (100, 1000)]
+    other = [Trial("wave", "numerics.precision", name, 1.0, 1.0) for name in ("f64", "f32")]
     table = orders(pd.DataFrame([asdict(run) for run in wave + steps + ball + other]))
     assert list(zip(table["scene"], table["setting"], strict=True)) == [
         ("wave", "cells"),

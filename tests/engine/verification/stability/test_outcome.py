@@ -9,7 +9,7 @@ import pytest
 import engine.simulation.guard
 from engine.job.directory import JobDirectory
 from engine.job.storage import read_dataset
-from engine.verification.stability.case import Case, alone, uniform
+from engine.verification.stability.case import ExtremeCase, alone, uniform
 from engine.verification.stability.cases import FREE
 from engine.verification.stability.measures import LARGEST_GROWTH
 from engine.verification.stability.outcome import FAILED, STABLE, STOPPED, run_case
@@ -48,13 +48,13 @@ def test_an_exception_is_a_failure(tmp_path: Path) -> None:
     def broken(scene):
         raise ZeroDivisionError("by nothing")
 
-    outcome = run_case(Case("any", "any", alone(), broken), tmp_path)
+    outcome = run_case(ExtremeCase("any", "any", alone(), broken), tmp_path)
     assert (outcome.verdict, outcome.reason) == (FAILED, "ZeroDivisionError: by nothing")
     assert not outcome.acceptable
 
 
 def test_a_start_that_a_checkpoint_cannot_hold_is_a_failure_and_not_replaced_by_the_scenes_own(tmp_path: Path) -> None:
-    outcome = run_case(Case("any", "any", alone(100.0, physics=FREE), uniform(E=np.nan)), tmp_path)
+    outcome = run_case(ExtremeCase("any", "any", alone(100.0, physics=FREE), uniform(E=np.nan)), tmp_path)
     assert outcome.verdict == FAILED and "E of particle 0 is not finite" in outcome.reason
 
 
@@ -64,7 +64,9 @@ def test_a_stop_without_a_good_checkpoint_is_a_failure(tmp_path: Path) -> None:
         velocity[7] = [3e5, 0.0, 0.0]
         return {"v": velocity}
 
-    outcome = run_case(Case("any", "any", alone(particles=200, physics=FREE), one_fast, physical=False), tmp_path)
+    outcome = run_case(
+        ExtremeCase("any", "any", alone(particles=200, physics=FREE), one_fast, physical=False), tmp_path
+    )
     assert outcome.verdict == FAILED
     assert outcome.reason.startswith("speed [m/s] of particle") and "no checkpoint to go on from" in outcome.reason
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from engine.job.storage import read_dataset
-from engine.verification.stability.outcome import FAILED, STABLE, STOPPED, Outcome
+from engine.verification.stability.outcome import FAILED, STABLE, STOPPED, CaseResult
 from engine.verification.stability.results import dataset, summary, write
 from engine.verification.stability.von_neumann import Limit
 from tests.helpers.stability_cases import CALM
@@ -13,7 +13,7 @@ from tests.helpers.stability_cases import CALM
 
 def test_results_are_written_with_units_and_counted_by_group(tmp_path: Path) -> None:
     ends = [("a", "1", STABLE), ("a", "2", STOPPED), ("b", "1", FAILED)]
-    outcomes = [Outcome(group, name, "f64", False, verdict, "", 5, 1.0, 0.1, CALM) for group, name, verdict in ends]
+    outcomes = [CaseResult(group, name, "f64", False, verdict, "", 5, 1.0, 0.1, CALM) for group, name, verdict in ends]
     results = dataset(outcomes, [Limit("1 x 1 x 1", 1.001, 1.0)])
     write(tmp_path, results)
     assert read_dataset(tmp_path / "stability.nc").identical(results)
