@@ -49,7 +49,7 @@ class OpenScene:
             until: time [s]; the end of the scene if `None`, and at most that.
 
         Raises:
-            GuardFault: a particle left the range in which the equations hold.
+            GuardFault: a particle is outside the range in which the equations are valid.
         """
         end = self.scene.end_time if until is None else min(until, self.scene.end_time)
         while self.time < end:

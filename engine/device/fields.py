@@ -14,7 +14,7 @@ from engine.device.taichi_internals import StructField, to_numpy_type
 def capacity(count: int) -> int:
     """Return the size of a field for `count` entries: a power of two, at least 1024.
 
-    So scenes of many sizes share compiled kernels.
+    With few sizes of fields, scenes of many sizes use the same compiled kernels.
     """
     return max(1024, 1 << (count - 1).bit_length())
 

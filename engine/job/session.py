@@ -59,7 +59,7 @@ def run_job(directory: Path, options: Options) -> Status:
         How the job then stands: done, failed or interrupted.
 
     Raises:
-        SceneError: the directory holds no valid scene.
+        SceneError: the directory contains no valid scene.
         JobError: another process runs it, or its files belong to another scene or physics version.
     """
     scene, job = scene_in(directory), JobDirectory(directory)

@@ -1,4 +1,4 @@
-"""What the device laws of all equations of state share: the constants of their materials."""
+"""Constants of an equation of state on the device."""
 
 from collections.abc import Sequence
 

@@ -73,7 +73,7 @@ def measure(source: Path, steps: int, arch: str, threads: int) -> Measurement:
     Raises:
         SceneError: the scene cannot be read.
         JobError: the checkpoint is of another scene or physics version.
-        RunFault: a particle left the range in which the equations hold.
+        RunFault: a particle is outside the range in which the equations are valid.
     """
     scene = scene_at(source)
     backend.start(arch, threads)

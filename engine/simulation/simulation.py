@@ -30,7 +30,7 @@ LAUNCHES = 64
 
 @dataclass(frozen=True)
 class Events:
-    """Times of what happens between steps, and what it found when it last happened.
+    """Times of what happens between steps, and results of its last occurrence.
 
     Attributes:
         gravity_due: simulated time [s] at which self-gravity is next computed; infinite without self-gravity.
@@ -107,7 +107,7 @@ class Simulation:
             steps: most steps.
 
         Raises:
-            GuardFault: a particle left the range in which the equations hold.
+            GuardFault: a particle is outside the range in which the equations are valid.
         """
         self._handle_events()
         self.clock.pause_time[None] = min(until, self.events.gravity_due)

@@ -75,7 +75,7 @@ def test_limit_never_falls_with_pressure_and_never_rises_with_damage(name):
 
 
 @pytest.mark.parametrize("name", SETS)
-def test_retained_is_exactly_one_up_to_the_limit_and_their_ratio_beyond(name):
+def test_the_return_factor_is_exactly_one_up_to_the_limit_and_their_ratio_beyond(name):
     P, u, D = states()
     Y = engine_limit(name, P, u, D)
     root_J2 = Y * np.random.default_rng(2).choice([0.0, 0.5, 1.0, 1.0 + 1e-12, 2.0, 1e6], len(Y))
