@@ -33,7 +33,7 @@ class Code(BaseModel):
     dirty: bool = False
 
 
-class Session(BaseModel):
+class SessionRecord(BaseModel):
     """What provenance.json tells of one session of a job.
 
     Attributes:
@@ -65,7 +65,7 @@ class Provenance(BaseModel):
         sessions: of one job, oldest first.
     """
 
-    sessions: list[Session]
+    sessions: list[SessionRecord]
 
 
 def write_report(found: Collected, figures: Sequence[tuple[str, Path]], path: Path) -> None:
@@ -122,7 +122,7 @@ def _sessions(outcomes: Outcomes) -> dict[str, list[str]]:
     return {name: sorted(values) for name, values in found.items()}
 
 
-def _sessions_of(job: JobDirectory) -> list[Session]:
+def _sessions_of(job: JobDirectory) -> list[SessionRecord]:
     """The sessions of a job; none when the record is missing or damaged, so that the others are still shown."""
     try:
         return Provenance.model_validate_json(job.provenance.read_bytes()).sessions
