@@ -4,11 +4,10 @@ import pytest
 from engine.laws.strength import Strength, Unlimited, return_factor
 from engine.scene.material import PARAMETER_SETS, Material
 from tests.helpers.device import Array, evaluate, worst
-from tests.helpers.oracle import U_MELT, strength_limit
+from tests.helpers.oracle import FRICTION, U_MELT, strength_limit
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
-FRICTION = {"sugiura2018": 0.839, "talk": 0.945}
 SETS = list(FRICTION)
 
 
