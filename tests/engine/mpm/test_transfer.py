@@ -22,9 +22,9 @@ def lengths(vectors: Array) -> Array:
 def affine_velocity(L: Array, dt: float, j: Array) -> Array:
     """C = sym(L (I + dt L)^-1) + skew(L), unless that raises |sym C| max(J, 1)^(1/3).
 
-    The engine's formula restated, tolerance and all, so that a whole step can be compared. That the formula is right
-    is tested without it, by its properties, in test_affine_velocity.py: exact for isotropic flow of dilated matter, never
-    a source of energy; and here by the free expansion, whose solution is known.
+    The engine's formula restated, tolerance and all, so that a whole step can be compared. That the formula is right is
+    tested without it, by its properties, in test_affine_velocity.py: exact for isotropic flow of dilated matter, never a
+    source of energy; and here by the free expansion, whose solution is known.
     """
     transposed = (0, 2, 1)
     stretched = L @ np.linalg.inv(np.eye(3) + dt * L)
@@ -38,8 +38,8 @@ def dense_step(state: dict[str, Array], dx: float, dt: float) -> dict[str, Array
     """One step of the material point method on a grid without blocks (section 1).
 
     A twin of the engine: the same equations in plain NumPy, particle by particle and node by node. It is evidence that
-    blocks, copies and their sums make the sums of one grid, and not that the equations are the right ones. Evidence for
-    those are the tests below it, against closed forms: linear velocity fields, free flight, Hubble's law, the damping of
+    blocks, copies and their sums make the sums of one grid, and not that the equations are the right ones. Evidence of
+    that are the tests below, against closed forms: linear velocity fields, free flight, Hubble's law, the damping of
     shear waves, and the conservation of momentum and angular momentum.
     """
     mass, momentum = defaultdict(float), defaultdict(lambda: np.zeros(3))
