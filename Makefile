@@ -47,7 +47,7 @@ status: $(INSTALLED) ## show how every job of STUDY stands
 plots: $(INSTALLED) ## print the table of shapes of STUDY and draw its figures
 	@directory=$$($(RUN) campaigns where '$(STUDY)' --runs '$(RUNS)') && $(RUN) analysis plots "$$directory"
 
-accuracy: $(INSTALLED) ## turn every numerical setting of scenes and of a collision: error against computing time
+accuracy: $(INSTALLED) ## vary every numerical setting of scenes and of a collision: error against computing time
 	@$(RUN) engine accuracy '$(RUNS)/verification' $(if $(WORKERS),--workers $(WORKERS))
 	@$(RUN) campaigns run accuracy --runs '$(RUNS)' $(RESOURCES) ; code=$$?; \
 		[ $$code -gt 1 ] || $(RUN) analysis accuracy '$(RUNS)/accuracy'; drawn=$$?; \

@@ -7,16 +7,13 @@ from campaigns.dotted_keys import flatten
 
 Scalar = float | int | str
 
-OVERRULED = "material.damaged_friction"
-"""A parameter whose place `friction`, or else `parameter_set`, takes in a collision."""
-
 NONE = "none"
 """What stands for a parameter that is not set, since netCDF knows no null."""
 
 
 def parameters(job: KeptJob) -> dict[str, Scalar]:
     """Parameters of the collision of a job by dotted key: `viscosity.shear` for `viscosity: {shear}`."""
-    return {key: plain(value) for key, value in flatten(job.collision).items() if key != OVERRULED}
+    return {key: plain(value) for key, value in flatten(job.collision).items()}
 
 
 def plain(value: JsonValue) -> Scalar:

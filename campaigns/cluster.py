@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
 
 import dask
-from dask.distributed import Client, LocalCluster
+from dask.distributed import Client, LocalCluster, SpecCluster
 from dask.system import CPU_COUNT
 
 from campaigns.worker import Worker
@@ -70,15 +69,15 @@ def _client(resources: Resources) -> Iterator[Client]:
         yield client
 
 
-def _local(resources: Resources) -> Any:
-    """Worker threads of this process: all they do is wait for the engine's processes."""
-    with dask.config.set({"distributed.scheduler.worker-ttl": None}):  # or they were lost when the machine slept
+def _local(resources: Resources) -> LocalCluster:
+    """Worker threads of this process, which only wait for the engine's processes."""
+    with dask.config.set({"distributed.scheduler.worker-ttl": None}):  # else a machine that slept loses its workers
         return LocalCluster(
             n_workers=1,
             threads_per_worker=resources.workers,
             processes=False,
             memory_limit=0,
-            dashboard_address="127.0.0.1:0",  # any port, so that campaigns beside each other are quiet
+            dashboard_address="127.0.0.1:0",  # any port, so that two campaigns do not warn of each other
             silence_logs=logging.ERROR,
         )
 
@@ -93,7 +92,7 @@ def _client_of(address: str) -> Client:
         ) from error
 
 
-def _slurm(resources: Resources) -> Any:
+def _slurm(resources: Resources) -> SpecCluster:
     """Workers as SLURM jobs with one job of ours at a time; memory, queue and walltime are dask-jobqueue's settings."""
     try:
         jobqueue = import_module("dask_jobqueue")

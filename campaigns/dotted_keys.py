@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from engine.scene.input_errors import models_in
+from engine.scene.keys import ANY_NAME, has_names, models_in
 
 LEADING = ("velocity", "angle")
 """Keys that come first wherever keys are listed."""
@@ -44,13 +44,33 @@ def nest(flat: dict[str, Any]) -> dict[str, Any]:
 
 
 def value_at(model: BaseModel, key: str) -> Any:
-    """The value that a dotted key leads to."""
-    return reduce(getattr, key.split("."), model)
+    """Return the value that a dotted key leads to, through models and tables by name."""
+    return reduce(_inside, key.split("."), model)
+
+
+def _inside(node: Any, part: str) -> Any:
+    return node[part] if isinstance(node, dict) else getattr(node, part)
 
 
 def scalar_keys(model: type[BaseModel], prefix: str = "") -> Iterator[str]:
-    """Dotted keys of all single values of an input model; those of every kind of table that a key may hold."""
+    """List the dotted keys of all single values of an input model, for every kind of table that a key may hold.
+
+    `NAME` stands for the names that a study gives: `materials.NAME.rho0`.
+    """
     for name, field in model.model_fields.items():
         tables = models_in(field.annotation)
-        below = [key for table in tables for key in scalar_keys(table, f"{prefix}{name}.")]
+        inner = f"{prefix}{name}.{ANY_NAME}." if has_names(field) else f"{prefix}{name}."
+        below = [key for table in tables for key in scalar_keys(table, inner)]
         yield from dict.fromkeys(below) if tables else [prefix + name]
+
+
+def rest_of(key: str, known: str) -> str | None:
+    """Return what follows a dotted key in a known one, empty where they are the same; None where they part.
+
+    Args:
+        key: as given, `materials.ice.eos`.
+        known: as from `scalar_keys`, `materials.NAME.eos.A`.
+    """
+    given, parts = key.split("."), known.split(".")
+    agree = len(given) <= len(parts) and all(part in (ANY_NAME, own) for own, part in zip(given, parts, strict=False))
+    return ".".join(parts[len(given) :]) if agree else None

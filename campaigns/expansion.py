@@ -9,13 +9,14 @@ import numpy as np
 from pydantic import ValidationError
 
 from campaigns.campaign import Campaign, Job
-from campaigns.dotted_keys import flatten, ordered, scalar_keys, value_at
+from campaigns.dotted_keys import flatten, ordered, rest_of, scalar_keys, value_at
 from campaigns.job_names import alias, job_id
 from campaigns.study import Study
 from engine import PHYSICS_VERSION
 from engine.errors import SceneError
 from engine.scene.collision import Collision
 from engine.scene.input_errors import suggestion
+from engine.scene.keys import current_key
 from engine.scene.scene import Scene
 
 
@@ -46,14 +47,18 @@ def scene_of(collision: Collision, source: str) -> Scene:
     """The scene of a collision.
 
     Raises:
-        SceneError: no orbit leads to this collision, or its numbers leave the range of floating point.
+        SceneError: no orbit leads to this collision, its numbers leave the range of floating point, or a material
+            lacks a constant.
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             return collision.scene()
+    except SceneError as error:
+        raise SceneError(f"{source}: {error}") from error
     except (ValueError, ArithmeticError, IndexError) as error:
         text = error.errors()[0]["msg"] if isinstance(error, ValidationError) else str(error)
-        given = ", ".join(f"{key} {getattr(collision, key):g}" for key in ("velocity", "radius", "start_separation"))
+        keys = ("velocity", "target.radius", "start_separation")
+        given = ", ".join(f"{key} {value_at(collision, key):g}" for key in keys)
         reason = " ".join(text.removeprefix("Value error, ").split())
         raise SceneError(f"{source}: no scene can be built from {given}: {reason}") from error
 
@@ -138,11 +143,14 @@ def _refuse_second_seeds(study: Study, source: str) -> None:
 
 def _require_scalar_key(key: str, source: str) -> None:
     known = list(scalar_keys(Collision))
-    inside = [name for name in known if name.startswith(f"{key}.")]
-    if inside:
-        raise SceneError(f"{source}: 'axes.{key}' is a table; name one of its values: {', '.join(inside)}")
-    if key not in known:
+    rests = [rest for rest in (rest_of(key, name) for name in known) if rest is not None]
+    if renamed := current_key(Collision, key):
+        raise SceneError(f"{source}: 'axes.{key}' is now 'axes.{renamed}'")
+    if not rests:
         raise SceneError(f"{source}: unknown key 'axes.{key}'{suggestion(key, known)}")
+    if any(rests):
+        inside = ", ".join(f"{key}.{rest}" for rest in rests)
+        raise SceneError(f"{source}: 'axes.{key}' is a table; name one of its values: {inside}")
 
 
 def _require_values(key: str, values: Any, source: str) -> None:

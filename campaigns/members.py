@@ -6,19 +6,17 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from engine.scene.collision import Collision
-from engine.scene.fields import Frozen, Number
+from engine.scene.fields import Frozen, Number, key
 from engine.scene.scene import Seed
 
 
 class ErrorBars(Frozen):
-    """What the members of one cell are.
+    """Members of each point of the study: two resolutions, each with all seeds."""
 
-    coarser: particles of the second resolution, as a share of the study's.
-    seeds: seeds of both resolutions.
-    """
-
-    coarser: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.5
-    seeds: Annotated[tuple[Seed, ...], Field(min_length=2)]
+    coarser: Annotated[
+        Number, Field(gt=0.0, lt=1.0), key("particles of the second resolution, as a fraction of the study's", "1")
+    ] = 0.5
+    seeds: Annotated[tuple[Seed, ...], Field(min_length=2), key("seeds of both resolutions", "1")]
 
     @model_validator(mode="after")
     def _seeds_differ(self) -> Self:

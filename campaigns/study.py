@@ -9,7 +9,7 @@ from campaigns.dotted_keys import flatten, nest
 from campaigns.members import ErrorBars
 from engine.errors import SceneError
 from engine.scene.collision import Collision
-from engine.scene.fields import Frozen, read_table, validate
+from engine.scene.fields import Frozen, key, read_table, validate
 from engine.scene.input_errors import KeysOf, suggestion
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)]
@@ -18,14 +18,11 @@ SHIPPED = Path(__file__).parent / "studies"
 
 
 class Case(Frozen):
-    """One line of a study that is no grid: settings of the collision, and what to call it.
-
-    name: label in the results, instead of the settings in short.
-    """
+    """One line of a study that is no grid: settings of the collision, and what to call it."""
 
     model_config = ConfigDict(extra="allow")
 
-    name: Name | None = None
+    name: Annotated[Name | None, key("label in the results, instead of the settings in short")] = None
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -34,22 +31,20 @@ class Case(Frozen):
 
 
 class Study(Frozen):
-    """What a study file holds.
+    """Content of a study file.
 
-    name: name of the study and of its results directory.
-    collision: settings of all collisions, keys as in engine.scene.collision.Collision.
-    axes: dotted key of the collision -> its values; every combination is a job.
-    cases: one table of settings for each collision, where they are no grid; together with axes, every case is run for
-        every combination of the axes, or, where it sets a key of theirs itself, at that value only.
-    error_bars: run each of these collisions at two resolutions and with several seeds.
+    Every combination of the values of `axes` is a job. With `cases` as well, every case is run for every combination,
+    or, where it sets a key of the axes itself, at that value only.
     """
 
-    name: Name
-    description: str = ""
-    collision: Annotated[dict[str, Any], KeysOf(Collision), Field(default_factory=dict)]
-    axes: dict[str, Any] | None = None
-    cases: list[Case] | None = None
-    error_bars: ErrorBars | None = None
+    name: Annotated[Name, key("name of the study and of its results directory")]
+    description: Annotated[str, key("what the study is for")] = ""
+    collision: Annotated[
+        dict[str, Any], KeysOf(Collision), Field(default_factory=dict), key("settings of all its collisions")
+    ]
+    axes: Annotated[dict[str, Any] | None, key("values of dotted keys of the collision")] = None
+    cases: Annotated[list[Case] | None, key("settings of each collision where they are no grid")] = None
+    error_bars: Annotated[ErrorBars | None, key("two resolutions and several seeds of each collision")] = None
 
     def collision_with(self, changes: dict[str, Any], source: str) -> Collision:
         """The collision of one job.

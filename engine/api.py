@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 
 class OpenScene:
-    """A scene in memory that can be advanced in time; nothing is written, and the guard of jobs does not watch it.
+    """A scene in memory that is advanced in time, without files and without the guard of jobs.
 
     Args:
         simulation: a started simulation.
 
     Attributes:
         scene: what is simulated.
-        simulation: its parts on the device.
+        simulation: its state and its parts on the device.
     """
 
     def __init__(self, simulation: "Simulation") -> None:

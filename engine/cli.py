@@ -1,7 +1,7 @@
-"""Command line of one simulation and of its verification: `python -m engine COMMAND`.
+"""Command line: `python -m engine COMMAND`.
 
-A command imports device modules only after it has chosen the precision (engine/device/options.py), so bad options and
-missing directories are reported at once.
+A command imports device modules after it has chosen the precision (engine/device/options.py); bad options and missing
+directories are therefore reported at once.
 """
 
 import logging
@@ -29,7 +29,7 @@ application = typer.Typer(
 )
 
 TABLE_WIDTH = 130
-"""Characters that a table of results needs, also where its output is not a terminal."""
+"""Least width of a printed table [characters], also where the output is not a terminal."""
 
 CORES = os.cpu_count() or 1
 
@@ -131,7 +131,7 @@ def accuracy(
     for run in sweep(names or TRADEOFFS, directory / "scenes.nc", workers):
         typer.echo(f"{run.scene:12} {run.setting:28} {run.value:>8}  error {run.error:9.3g}  {run.cpu_time:8.2f} s")
     runs = read(directory / "scenes.nc")
-    draw(runs, directory / "scenes.png")
+    draw(runs).savefig(directory / "scenes.png", dpi=80)
     typer.echo(orders(runs).to_string(index=False, float_format="%.2f"))
 
 
@@ -177,7 +177,7 @@ def _run(directory: Path, scene: Scene, threads: int, arch: Arch, checkpoint_int
 
 
 def progress_line(status: Status) -> str:
-    """Simulated time, rate and time left in one line."""
+    """Return simulated time, rate and time left in one line."""
     return (
         f"t = {status.time:.0f} of {status.end_time:.0f} s ({100.0 * status.progress:.0f} %), step {status.step}, "
         f"{status.steps_per_second:.0f} steps/s, {status.time_left:.0f} s left"

@@ -1,4 +1,4 @@
-"""What the engine tells its user when it cannot go on."""
+"""Errors that a user can act on, and exit codes."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class ExitCode(IntEnum):
-    """How a process of the engine ended."""
+    """Exit codes of `python -m engine`."""
 
     DONE = 0
     FAILED = 1
@@ -20,7 +20,7 @@ SMALLER_STEPS = "try a smaller numerics.cfl"
 
 
 class SceneError(ValueError):
-    """The input cannot be used: says which file and key, what was given, and what is allowed."""
+    """The input cannot be used; the message names file and key, what was given, and what is allowed."""
 
 
 class JobError(RuntimeError):
@@ -31,26 +31,31 @@ class JobBusyError(JobError):
     """Another process runs the job."""
 
 
-def in_words(error: OSError, place: object = "") -> str:
-    """The file and what is wrong with it, in one line; `place` stands in where the error names none."""
-    where = error.filename or place
+def in_words(error: OSError, path: object = "") -> str:
+    """Return one line that names the file and what is wrong with it.
+
+    Args:
+        error: raised by the operating system.
+        path: named if the error names no file.
+    """
+    where = error.filename or path
     return f"{where}: {error.strerror or error}" if where else f"{error.strerror or error}"
 
 
 class RunFault(RuntimeError):
-    """A simulation, or what it left, holds values outside the range in which its equations hold."""
+    """A state is outside the range in which the equations are valid."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """Why a running simulation was stopped.
+    """Why the guard stopped a simulation.
 
     Attributes:
-        quantity: what left its range, with its unit.
-        value: what it was; `None` when it was not finite.
-        allowed: its range, in words.
-        time: simulated time [s] at which it was found.
-        particle: index of the particle; `None` for a quantity of the whole run.
+        quantity: what is out of bounds, with its unit.
+        value: its value; `None` if it is not finite.
+        allowed: its bounds, in words.
+        time: simulated time [s].
+        particle: number of the particle in the scene; `None` for a quantity of the whole run.
         advice: what to try.
     """
 
@@ -88,5 +93,5 @@ def stop(
     *,
     advice: str,
 ) -> GuardFault:
-    """What to raise to stop a run; arguments as the attributes of `Fault`, except that `value` may not be finite."""
+    """Return the error that stops a run; arguments as the attributes of `Fault`, but `value` may be not finite."""
     return GuardFault(Fault(quantity, value if math.isfinite(value) else None, allowed, time, particle, advice))

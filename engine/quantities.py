@@ -19,12 +19,16 @@ class Quantity(NamedTuple):
     is_vector: bool = False
 
     def attributes(self) -> dict[str, str]:
-        """As netCDF attributes, leaving out what is empty."""
+        """Return netCDF attributes, without those that are empty."""
         texts = {"long_name": self.long_name, "units": self.units, "comment": self.comment}
         return {key: text for key, text in texts.items() if text}
 
     def dims(self, along: str) -> tuple[str, ...]:
-        """Dimensions of an array of values along `along`; the last one of a vector is `space`."""
+        """Return the dimensions of an array of values; the last one of a vector is `space`.
+
+        Args:
+            along: name of the first dimension.
+        """
         return (along, "space") if self.is_vector else (along,)
 
 

@@ -7,6 +7,7 @@ from analysis.accuracy.cases import BASE, RESOLUTION, Case
 from analysis.accuracy.orders import orders
 from analysis.results.statistics import Difference, count, difference, interval, paired_difference, resolved
 from analysis.results.variables import DRIFTS, OUTCOMES
+from engine.job.directory import JobState
 
 MEASURED = ("mass_ratio", "b_over_a", "c_over_a", "bulk_density")
 """Outcomes that are compared."""
@@ -26,7 +27,7 @@ def accuracy(results: xr.Dataset, cases: dict[str, Case]) -> xr.Dataset:
         results: the results of a campaign, dimensions case and seed.
         cases: the setting that each case varies, by name of the case.
     """
-    done = results.sel(case=(results["state"] == "done").any("seed").values)
+    done = results.sel(case=(results["state"] == JobState.DONE).any("seed").values)
     finest = _finest([str(name) for name in done["case"].values], cases)
     data = _described(done, cases)
     for name in MEASURED:

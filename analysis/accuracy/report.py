@@ -13,6 +13,7 @@ from analysis.results.collect import collect
 from analysis.results.variables import DRIFTS
 from campaigns.campaign import KeptCampaign, read_campaign
 from engine.errors import SceneError
+from engine.job.directory import JobState
 from engine.job.storage import write_dataset, write_text
 
 HEADS = {"mass_ratio": "M_lr/M_t", "b_over_a": "b/a", "c_over_a": "c/a", "bulk_density": "density [kg/m3]"}
@@ -30,7 +31,7 @@ def write_accuracy(campaign_directory: Path) -> tuple[xr.Dataset, str, list[Path
     """
     known = cases(read_campaign(campaign_directory, KeptCampaign))
     results = collect(campaign_directory)
-    if not (results["state"].sel(case="base") == "done").any():
+    if not (results["state"].sel(case="base") == JobState.DONE).any():
         raise SceneError(f"{campaign_directory}: no run of the case 'base' is done yet; run the campaign first")
     data = accuracy(results, known)
     text = markdown(data, len(results["case"]))

@@ -1,4 +1,4 @@
-"""What a run conserved: the drift of each conserved quantity over its history."""
+"""Conservation in a run: the relative change of each conserved quantity over its history."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from engine.scene.bodies import Body
 from engine.scene.scene import Scene
 
 NEGLIGIBLE = 1e-6
-"""An initial angular momentum below this share of sum m |x| |v| is none: a head-on impact."""
+"""An initial angular momentum below this fraction of sum m |x| |v| counts as zero: a head-on impact."""
 
 
 def read_history(path: Path) -> xr.Dataset:

@@ -10,7 +10,7 @@ THIN = 4.0
 """A remnant whose shortest axis is below this many particle spacings h is thin: its c/a is not resolved."""
 
 NO_EXTENT = 1e-12
-"""Squared axes below this share of the largest are round-off, and count as zero."""
+"""Squared axes below this fraction of the largest are round-off, and count as zero."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from analysis.remnant.particles import Integers, Particles, read_particles, snap
 from analysis.remnant.settling import is_settled, shape_change
 from analysis.remnant.spin import spin_period
 from analysis.results.variables import DAMAGED, DRIFTS, UndescribedError, described
-from engine.errors import JobError, RunFault
+from engine.errors import JobError, RunFault, SceneError
 from engine.job.directory import JobDirectory, JobState
 from engine.scene.scene import scene_in
 
@@ -21,6 +21,9 @@ Numbers = dict[str, float]
 
 ANEW = "delete the directory of this job and run the study again to compute it anew"
 """What to do with a job whose files are damaged."""
+
+ELSEWHERE = "keep it: it may be sound, and the version that computed it, named in provenance.json, can measure it"
+"""What to do with a job whose scene or physics this version does not know."""
 
 
 @dataclass(frozen=True)
@@ -55,11 +58,11 @@ Outcomes = dict[str, Outcome]
 
 
 def outcome(job: JobDirectory, physics_version: int) -> Outcome:
-    """The outcome of a job; a damaged one is `corrupt` and raises nothing.
+    """The outcome of a job; one that cannot be read is `corrupt` and raises nothing.
 
     Args:
         job: the job directory.
-        physics_version: a job computed with any other is corrupt.
+        physics_version: a job computed with any other is not measured.
 
     Raises:
         UndescribedError: as `measure`.
@@ -70,13 +73,17 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
             return Outcome(job, JobState(status.state), _line(status.reason))
         particles = read_particles(job.final)
         if particles.physics_version != physics_version:
-            raise JobError(f"computed with physics version {particles.physics_version}, not {physics_version}")
+            version = particles.physics_version
+            reason = f"computed with physics version {version}, not {physics_version}; {ELSEWHERE}"
+            return Outcome(job, JobState.CORRUPT, reason)
         labels = clumps_of(particles)
         return Outcome(job, JobState.DONE, numbers=measure(job, particles, labels), in_remnant=labels == 0)
     except RunFault as fault:
         return Outcome(job, JobState.FAILED, _line(fault))
     except UndescribedError:
         raise
+    except SceneError as error:
+        return Outcome(job, JobState.CORRUPT, f"{_line(error)}; {ELSEWHERE}")
     except Exception as error:  # whatever is wrong with one job must not hide the others
         return Outcome(job, JobState.CORRUPT, f"{_line(error)}; {ANEW}")
 

@@ -1,4 +1,4 @@
-"""Whether the shape of the largest remnant has come to rest."""
+"""Whether the shape of the largest remnant is steady."""
 
 import numpy as np
 
@@ -8,16 +8,16 @@ from analysis.remnant.particles import Particles, read_particles, snapshots
 from engine.job.directory import JobDirectory
 
 WINDOW = 0.1
-"""The shape is followed over this last share of the time since contact."""
+"""Fraction of the time since contact, up to its end, in which the shape must not change."""
 
 OLDEST = 0.5
-"""When snapshots are sparse the window grows, up to this share."""
+"""Largest fraction to which the window is widened when snapshots are sparse."""
 
 TOLERANCE = 0.02
-"""A shape is settled when b/a and c/a change by less than this, relative, over the window.
+"""Relative change of b/a and c/a in the window below which a shape is settled.
 
-A remnant at its greatest stretch stands still for a moment too: it passes as settled when the window is short
-against its oscillation."""
+A remnant that oscillates is momentarily at rest at its greatest stretch: it counts as settled when the window is short
+against its period."""
 
 
 def shape_change(remnant: Particles, job: JobDirectory) -> float:

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,11 +11,13 @@ from numpy.typing import NDArray
 from analysis.campaign import NONE, Scalar, parameters, plain
 from analysis.remnant.outcome import Outcome, Outcomes, outcome
 from analysis.results.error_bars import combine
-from analysis.results.variables import OUTCOMES, PARAMETERS, TEXTS
+from analysis.results.variables import OUTCOMES, TEXTS, parameter
 from campaigns.campaign import KeptCampaign, read_campaign
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
-from engine.quantities import Quantity
+
+Column = NDArray[np.float64] | NDArray[np.object_]
+"""Numbers or texts of all jobs, shape [job_count]."""
 
 ALWAYS = ("velocity", "angle", "end_time")
 """Parameters that are coordinates even when every job has the same."""
@@ -45,9 +46,9 @@ def collect(campaign_directory: Path) -> xr.Dataset:
 def collect_with_outcomes(campaign_directory: Path) -> Collected:
     """Measure every job of a campaign and write results.nc into its directory.
 
-    With error bars the jobs are in members.nc, and results.nc holds what they say together (see error_bars.py).
-    Cells without an outcome are NaN and carry the state of their job. Parameters in which jobs differ are
-    coordinates; those all jobs share are attributes.
+    With error bars the jobs are in members.nc, and results.nc contains their means and errors (see error_bars.py).
+    Points without an outcome are NaN and have the state of their job. Parameters in which jobs differ are
+    coordinates; those that all jobs share are attributes.
 
     Raises:
         SceneError: there is no campaign.json, or it does not describe a campaign.
@@ -107,28 +108,28 @@ def _numbers(campaign: KeptCampaign, outcomes: list[Outcome]) -> dict[str, xr.Da
 
 
 def _texts(campaign: KeptCampaign, outcomes: list[Outcome]) -> dict[str, xr.DataArray]:
-    cells = [
+    texts = [
         {"state": found.state.value, "reason": found.reason, "job": job.id}
         for job, found in zip(campaign.jobs, outcomes, strict=True)
     ]
     empty = {"state": JobState.MISSING.value, "reason": "", "job": ""}
     return {
         name: _grid(
-            campaign, np.array([cell[name] for cell in cells], dtype=object), empty[name], variable.attributes()
+            campaign, np.array([text[name] for text in texts], dtype=object), empty[name], variable.attributes()
         )
         for name, variable in TEXTS.items()
     }
 
 
-def _grid(campaign: KeptCampaign, column: NDArray[Any], empty: float | str, attributes: dict[str, str]) -> xr.DataArray:
-    """One value per job, each in its cell; `empty` where no job is."""
+def _grid(campaign: KeptCampaign, column: Column, empty: float | str, attributes: dict[str, str]) -> xr.DataArray:
+    """The values of all jobs, each at the point of its job; `empty` where there is no job."""
     values = np.full(campaign.shape, empty, dtype=column.dtype)
     for job, value in zip(campaign.jobs, column, strict=True):
         values[campaign.position(job)] = value
     return xr.DataArray(values, dims=campaign.dims, attrs=attributes)
 
 
-def _column(values: Sequence[Scalar]) -> NDArray[Any]:
+def _column(values: Sequence[Scalar]) -> Column:
     """Numbers as f64 with NaN for none; anything with other texts in it as texts."""
     if any(isinstance(value, str) and value != NONE for value in values):
         return np.array([str(value) for value in values], dtype=object)
@@ -136,4 +137,4 @@ def _column(values: Sequence[Scalar]) -> NDArray[Any]:
 
 
 def _attributes(name: str) -> dict[str, str]:
-    return PARAMETERS.get(name, Quantity(name.replace("_", " "), "")).attributes()
+    return parameter(name).attributes()

@@ -1,4 +1,4 @@
-"""Cells of a study with error bars: the mean of their members, and how far it can be trusted."""
+"""Points of a study with error bars: the mean over their members and its error."""
 
 import numpy as np
 import xarray as xr
@@ -8,7 +8,7 @@ from analysis.results.variables import COSTS, OUTCOMES, WITHOUT_ERROR
 from engine.job.directory import JobState
 
 MEMBERS = ("resolution", "seed")
-"""Dimensions of the members of one cell."""
+"""Dimensions of the members of one point."""
 
 _WORST_FIRST = (
     JobState.CORRUPT,
@@ -22,33 +22,37 @@ _WORST_FIRST = (
 """Of the states of its members, a point has the first in this order."""
 
 _ERROR = (
-    "standard error over seeds and difference of the means of both resolutions, in quadrature; NaN if one is unknown"
+    "sqrt(e^2 + d^2) with the standard error e of the mean over seeds and the difference d of the means at both "
+    "resolutions; NaN if one is unknown"
 )
-_RESOLVED = "1 where it exceeds the 95 % confidence interval that the seeds leave it, 0 where not"
+_RESOLVED = (
+    "1 where the difference of the means at both resolutions exceeds the half-width of its 95 % confidence interval "
+    "over seeds, 0 where not; NaN if one is unknown"
+)
 
 
 def combine(members: xr.Dataset) -> xr.Dataset:
-    """One value a cell: the mean over the seeds of the finer resolution, its error, and the number of members.
+    """Combine the members of each point: the mean over the seeds of the finer resolution, its error, and their number.
 
     `<variable>_error` adds, in quadrature, the standard error of that mean and its difference to the mean of the
-    coarser resolution; it is NaN while one of them is unknown. `<variable>_resolved` tells whether that difference
-    exceeds what the seeds alone would make of it. Flags become a share of the seeds, costs the sum of all members.
+    coarser resolution; it is NaN while one of them is unknown. `<variable>_resolved` is 1 where that difference
+    exceeds its confidence interval over the seeds. Flags become a fraction of the seeds, costs the sum of all members.
 
     Args:
         members: the data set of all runs, with the dimensions `MEMBERS` last.
     """
     fine = members.sel(resolution="fine")
     first = fine.isel(seed=0, drop=True).drop_vars("resolution")
-    cells = first.drop_vars([*OUTCOMES, "state", "reason"])
+    points = first.drop_vars([*OUTCOMES, "state", "reason"])
     for name in OUTCOMES:
-        cells = cells.assign(_measured(members[name]))
-    return cells.assign(_states(members)).assign_attrs(
+        points = points.assign(_measured(members[name]))
+    return points.assign(_states(members)).assign_attrs(
         seeds=members["seed"].values.tolist(), members="two resolutions, coarse and fine, with all seeds: members.nc"
     )
 
 
 def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
-    """The value of a cell and, where it is a measured number, its error."""
+    """The value of a point and, where it is a measured number, its error."""
     name, attributes = str(values.name), values.attrs
     fine, coarse = (values.sel(resolution=which, drop=True) for which in ("fine", "coarse"))
     if name in COSTS:
@@ -58,7 +62,11 @@ def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
         return {name: mean}
     error = ((mean - coarse.mean("seed")) ** 2 + standard_error(fine) ** 2) ** 0.5
     about = {"long_name": f"error of the {attributes['long_name']}", "units": attributes["units"], "comment": _ERROR}
-    flag = {"long_name": f"resolution changes the {attributes['long_name']}", "units": "1", "comment": _RESOLVED}
+    flag = {
+        "long_name": f"significant change with resolution of the {attributes['long_name']}",
+        "units": "1",
+        "comment": _RESOLVED,
+    }
     return {
         name: mean,
         f"{name}_error": error.assign_attrs(about),
@@ -67,7 +75,7 @@ def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
 
 
 def _states(members: xr.Dataset) -> dict[str, xr.DataArray]:
-    """A cell is done when all its members are; else it is as its worst member, for that one's reason."""
+    """A point is done when all its members are; else it has the state and the reason of its worst member."""
     state, reason = members["state"], members["reason"]
     found = state.isel(resolution=0, seed=0, drop=True)
     for one in reversed(_WORST_FIRST):

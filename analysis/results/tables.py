@@ -1,4 +1,4 @@
-"""The cells of a campaign as tables, for the terminal, for a file and for the figures."""
+"""The points of a study as tables, for the terminal, for a file and for the figures."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -31,17 +31,17 @@ HEADINGS = {
 DECIMALS = {"M_lr/M_t": 3, "bound": 3, "b/a": 2, "c/a": 2, "c/a ext.": 2, "density [kg/m3]": 0, "period [h]": 2}
 
 NOT_A_SERIES = ("velocity", "angle", "end_time", "seed", "case")
-"""Coordinates that do not tell one series of collisions from another."""
+"""Coordinates in which the points of one series of collisions may differ."""
 
 
-def cells(results: xr.Dataset) -> pd.DataFrame:
-    """One row per cell, with every coordinate and variable of a results data set as a column."""
+def points(results: xr.Dataset) -> pd.DataFrame:
+    """One row per point, with every coordinate and variable of a results data set as a column."""
     return results.reset_coords().to_dataframe().reset_index()
 
 
 def series(results: xr.Dataset) -> Iterator[tuple[str, pd.DataFrame]]:
-    """The cells apart by every parameter but velocity, angle and seed: a name, empty for a single one, and its rows."""
-    table = cells(results)
+    """The points grouped by every parameter but velocity, angle and seed: a name, empty for a single one, and rows."""
+    table = points(results)
     hidden = [name for name in NOT_A_SERIES if not (name == "end_time" and name in results.dims)]
     names = [str(name) for name in results.coords if name not in hidden and table[name].nunique(dropna=False) > 1]
     if not names:
@@ -56,7 +56,7 @@ def shape_table(results: xr.Dataset) -> pd.DataFrame:
     """The table of shape against angle: dimensions, velocity, angle, and the outcomes in `HEADINGS`, with errors."""
     errors = [name for heading in HEADINGS for name in (heading, f"{heading}_error") if name in results]
     names = dict.fromkeys([*(str(dim) for dim in results.dims), *errors])
-    return cells(results)[list(names)]
+    return points(results)[list(names)]
 
 
 def write_shape_table(results: xr.Dataset, path: Path) -> None:
@@ -66,13 +66,13 @@ def write_shape_table(results: xr.Dataset, path: Path) -> None:
 
 
 def printed(table: pd.DataFrame) -> str:
-    """The table for people, for a terminal."""
+    """The table as a text with short headings, for a terminal."""
     shown, formatters = as_shown(table)
     return shown.to_string(index=False, formatters=formatters, na_rep="-")
 
 
 def as_shown(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, Callable[[object], str]]]:
-    """Short headings, value +- error, and how to write each column: few digits, a dash for what is not there."""
+    """The table with short headings and value +- error, and how to write each column; a dash stands for no value."""
     hours = {name: table[name] / 3600.0 for name in ("spin_period", "spin_period_error") if name in table}
     shown = _with_errors(table.assign(**hours)).rename(columns=HEADINGS)
     return shown, {name: partial(_text, decimals=DECIMALS.get(name)) for name in shown.columns}
@@ -90,23 +90,23 @@ def _with_errors(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def unresolved(results: xr.Dataset) -> list[str]:
-    """One line a cell that names the outcomes of the table whose change with resolution drowns in that of the seeds."""
+    """One line a point that names the outcomes of the table whose change with resolution is not significant."""
     names = [name for name in HEADINGS if f"{name}_resolved" in results]
-    table = cells(results)
+    table = points(results)
     lines = []
     for _, row in table.iterrows():
-        drowned = [HEADINGS[name] for name in names if row[f"{name}_resolved"] == 0.0]
-        if drowned:
-            place = ", ".join(f"{dim} {_text(row[dim])}" for dim in map(str, results.dims))
-            lines.append(f"{place}: resolution changes nothing beyond the spread of the seeds: {', '.join(drowned)}")
+        same = [HEADINGS[name] for name in names if row[f"{name}_resolved"] == 0.0]
+        if same:
+            point = ", ".join(f"{dim} {_text(row[dim])}" for dim in map(str, results.dims))
+            lines.append(f"{point}: no change with resolution beyond the scatter of the seeds: {', '.join(same)}")
     return lines
 
 
 def reasons(results: xr.Dataset, *states: str) -> list[str]:
-    """One line per job, in any of some states if given, that gives a reason for having no outcome."""
-    table = cells(results)
-    told = table[(table["reason"] != "") & (table["state"].isin(states) if states else True)]
-    return [f"{row.job}: {row.state}: {row.reason}" for row in told.itertuples()]
+    """One line per job that has a reason for having no outcome, of all jobs or of those in the given states."""
+    table = points(results)
+    without = table[(table["reason"] != "") & (table["state"].isin(states) if states else True)]
+    return [f"{row.job}: {row.state}: {row.reason}" for row in without.itertuples()]
 
 
 def _text(value: object, decimals: int | None = None) -> str:

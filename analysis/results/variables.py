@@ -1,10 +1,12 @@
-"""What each variable of results.nc is: the one list of names, units and meanings (CF attributes)."""
+"""The variables of results.nc: names, units and meanings (CF attributes)."""
 
 from analysis.remnant.ellipsoid import THIN
 from analysis.remnant.fragments import LINKING_LENGTH
 from analysis.remnant.settling import TOLERANCE, WINDOW
 from engine.job.directory import JobState
 from engine.quantities import CONSERVED, Quantity
+from engine.scene.collision import Collision
+from engine.scene.keys import meaning_of, unit_of
 
 DAMAGED = 0.5
 """A particle with more damage than this counts as damaged."""
@@ -76,7 +78,7 @@ OUTCOMES = {
     "J_p05": Quantity("5th percentile of rho0/rho over the particles of the largest remnant", "1"),
     "J_p50": Quantity("median of rho0/rho over the particles of the largest remnant", "1"),
     "J_p95": Quantity("95th percentile of rho0/rho over the particles of the largest remnant", "1"),
-    "damaged_fraction": Quantity("mass share of the largest remnant with damage above 0.5", "1"),
+    "damaged_fraction": Quantity(f"mass fraction of the largest remnant with damage above {DAMAGED:g}", "1"),
     "time_after_contact": Quantity("time of the outcome after point-mass contact", "s"),
     "shape_change": Quantity(
         "largest relative change of b_over_a and c_over_a lately",
@@ -108,10 +110,10 @@ def described(numbers: dict[str, float]) -> dict[str, float]:
 
 
 WITHOUT_ERROR = ("largest_thin", "settled", "time_after_contact")
-"""Outcomes that are no measured numbers."""
+"""Outcomes that are flags or given, not measured: they have no error."""
 
 COSTS = ("steps", "wall_time", "cpu_time")
-"""Outcomes that add up over the runs of a cell."""
+"""Outcomes that add up over the members of a point."""
 
 _STATES = ", ".join(state for state in JobState if state != JobState.MISSING)
 
@@ -122,20 +124,13 @@ TEXTS = {
 }
 """Texts of one job."""
 
-Variable = Quantity
+PARAMETERS = {"case": Quantity("name of the case", "")}
+"""Coordinates of results.nc that are no keys of a collision; others keep their own name and no unit."""
 
-PARAMETERS = {
-    "velocity": Variable("relative speed at point-mass contact", "m s-1"),
-    "angle": Variable("impact angle", "degree", "0 is head-on"),
-    "end_time": Variable("simulated time after point-mass contact", "s"),
-    "radius": Variable("radius of the target", "m"),
-    "projectile_radius": Variable("radius of the projectile", "m"),
-    "particles": Variable("particles in the target", "1"),
-    "seed": Variable("seed of the particles and flaws", "1"),
-    "friction": Variable("friction coefficient of damaged rock", "1"),
-    "sound_speed": Variable("factor on the speed of sound", "1", "below 1 a late-stage approximation"),
-    "viscosity.shear": Variable("kinematic shear viscosity", "m2 s-1"),
-    "viscosity.bulk": Variable("kinematic bulk viscosity", "m2 s-1"),
-    "case": Variable("name of the case", ""),
-}
-"""Parameters of a study with a known unit; others keep their own name and no unit."""
+
+def parameter(key: str) -> Quantity:
+    """Return what a coordinate or attribute of results.nc is: the meaning and unit of the dotted key of a collision."""
+    meaning = meaning_of(Collision, key)
+    if meaning is None:
+        return PARAMETERS.get(key, Quantity(key.replace("_", " "), ""))
+    return Quantity(meaning, unit_of(Collision, key) or "")

@@ -1,4 +1,4 @@
-"""device: Taichi, and arithmetic on it."""
+"""Taichi: starting it, fields, and arithmetic on them."""
 
 import os
 

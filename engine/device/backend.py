@@ -15,7 +15,7 @@ from engine.device.taichi_internals import current_cfg, is_arch_supported, to_nu
 from engine.errors import SceneError
 
 PRECISION = chosen()
-"""Name of the precision of this process."""
+"""Precision of this process, `f64` or `f32`."""
 
 Real = {"f64": ti.f64, "f32": ti.f32}[PRECISION]
 """Precision of every field and literal but time and position."""
@@ -24,7 +24,7 @@ EPSILON = float(np.finfo(to_numpy_type(Real)).eps)
 """Spacing of the numbers of this precision at 1."""
 
 place3 = ti.types.vector(3, ti.f64)
-"""Positions are double: a step is so short against them that in single precision it would round away."""
+"""Position, in double precision: in single precision the displacement of a step would be lost to round-off."""
 
 vec3 = ti.types.vector(3, Real)
 vec4 = ti.types.vector(4, Real)
@@ -32,24 +32,24 @@ vec6 = ti.types.vector(6, Real)
 mat3 = ti.types.matrix(3, 3, Real)
 
 TASK = 512
-"""Iterations of a CPU loop that Taichi gives to one thread at a time, whatever the loop asks for.
+"""Iterations of a CPU loop that Taichi gives to one thread at a time.
 
-A loop over few, long items runs over TASK times their number and works in every TASK-th iteration.
+A loop over few, long items therefore runs over TASK times their number and works in every TASK-th iteration.
 """
 
 STALE_LOCK_AGE = 60.0
-"""Age [s] at which a lock on the kernel cache was left by a killed process: Taichi would then never cache again."""
+"""Age [s] from which a lock on the kernel cache is removed: with one of a killed process Taichi never caches again."""
 
 
 def start(arch: str = "cpu", threads: int | None = None) -> None:
-    """Start Taichi in this process, ending every earlier program in it.
+    """Start Taichi in this process; all fields that exist become invalid.
 
     Args:
         arch: `cpu` or `cuda`.
         threads: CPU threads; all cores if `None`.
 
     Raises:
-        SceneError: the asked device is not available.
+        SceneError: the device is not available.
     """
     if arch == "cuda" and not is_arch_supported(ti.cuda):
         raise SceneError("--arch cuda: Taichi finds no CUDA device here; use --arch cpu")
@@ -75,8 +75,11 @@ def wait() -> None:
 def require_precision(precision: str) -> None:
     """Check that a scene asks for the precision of this process.
 
+    Args:
+        precision: `f64` or `f32`.
+
     Raises:
-        SceneError: the device modules were imported for another one.
+        SceneError: the device modules were imported for another precision.
     """
     if precision != PRECISION:
         raise SceneError(
@@ -86,7 +89,7 @@ def require_precision(precision: str) -> None:
 
 
 def on_gpu() -> bool:
-    """Whether the running program works on a GPU."""
+    """Return whether kernels run on a GPU."""
     return bool(current_cfg().arch != ti.cpu)
 
 

@@ -8,29 +8,42 @@ import taichi as ti
 from numpy.typing import NDArray
 
 from engine.device.backend import Real
-from engine.device.taichi_internals import to_numpy_type
+from engine.device.taichi_internals import StructField, to_numpy_type
 
 
 def capacity(count: int) -> int:
-    """Size of a field for `count` entries: few sizes, so that scenes of many sizes share compiled kernels."""
+    """Return the size of a field for `count` entries: a power of two, at least 1024.
+
+    So scenes of many sizes share compiled kernels.
+    """
     return max(1024, 1 << (count - 1).bit_length())
 
 
-def filled(dtype: Any, values: NDArray[Any]) -> ti.Field:
-    """Return a one-dimensional field that begins with `values`; the rest is zero."""
+def filled(dtype: Any, values: NDArray[np.generic]) -> ti.Field:
+    """Return a one-dimensional field that begins with given values; the rest is zero.
+
+    Args:
+        dtype: Taichi's type of an entry.
+        values: shape [count].
+    """
     field = ti.field(dtype, shape=capacity(len(values)))
     overwrite(field, values)
     return field
 
 
-def overwrite(field: Any, values: NDArray[Any]) -> None:
-    """Fill the first entries of a field with `values`, and the rest with zeros."""
+def overwrite(field: ti.Field, values: NDArray[np.generic]) -> None:
+    """Fill the first entries of a field with given values, and the rest with zeros.
+
+    Args:
+        field: of scalars, vectors or matrices.
+        values: shape [count], followed by that of an entry.
+    """
     padded = np.zeros((field.shape[0], *values.shape[1:]), dtype=to_numpy_type(field.dtype))
     padded[: len(values)] = values
     field.from_numpy(padded)
 
 
-def per_body(**columns: Sequence[float]) -> Any:
+def per_body(**columns: Sequence[float]) -> StructField:
     """Return a field of structs of constants, one entry per body.
 
     Args:

@@ -1,6 +1,6 @@
-"""What a user chooses of the device, without Taichi: the architecture, and the precision of all numbers.
+"""Options of the device, without Taichi: the architecture and the precision of all numbers.
 
-Precision is one per process, chosen before the device modules are imported.
+A process has one precision, chosen before the device modules are imported.
 """
 
 import os
@@ -18,21 +18,22 @@ class Arch(StrEnum):
 
 
 Precision = Literal["f64", "f32"]
+"""Names of the precisions: double and single."""
 
 VARIABLE = "ENGINE_PRECISION"
-"""Environment variable that holds the choice, for this process and those it starts."""
+"""Environment variable of the precision, for this process and those it starts."""
 
 
 def choose(precision: Precision) -> None:
-    """Let device modules that are imported from now on use a precision."""
+    """Set the precision of the device modules, if they are not imported yet."""
     os.environ[VARIABLE] = precision
 
 
 def chosen() -> Precision:
-    """The precision to build with.
+    """Return the precision that the environment asks for, `f64` if none.
 
     Raises:
-        SceneError: there is no such precision.
+        SceneError: the environment names another one.
     """
     given = os.environ.get(VARIABLE, "f64")
     if given in get_args(Precision):

@@ -5,11 +5,10 @@ many times. Cached, a cold start takes half the translation time.
 """
 
 import ast
-from typing import Any
 
 from engine.device.taichi_internals import ASTTransformerContext
 
-Key = tuple[Any, ...]
+Key = tuple[object, ...]
 """File, line offset, function, kind and extent of a piece of source code."""
 
 _cache: dict[Key, str] = {}
@@ -21,7 +20,7 @@ def cache_source_positions() -> None:
     ASTTransformerContext.get_pos_info = source_position
 
 
-def source_position(context: Any, node: ast.stmt | ast.expr) -> str:
+def source_position(context: ASTTransformerContext, node: ast.stmt | ast.expr) -> str:
     """Return file, line and text of a piece of code, as Taichi's error messages name them.
 
     Args:

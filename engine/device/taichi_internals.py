@@ -4,8 +4,6 @@ They exist in taichi >= 1.7.3, < 1.8, the versions that pyproject.toml allows;
 tests/engine/device/test_taichi_internals.py checks each of them.
 """
 
-from typing import Any
-
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 from taichi.lang.field import Field
 from taichi.lang.impl import current_cfg
@@ -24,6 +22,6 @@ __all__ = [
 ]
 
 
-def is_kernel(function: Any) -> bool:
+def is_kernel(function: object) -> bool:
     """Whether an attribute of a class was decorated with `ti.kernel`."""
     return hasattr(function, "_is_wrapped_kernel")

@@ -1,4 +1,7 @@
-"""Functions of symmetric 3x3 tensors that keep the digits of small strains (engine/physics.md, section 10)."""
+"""Functions of symmetric 3x3 tensors without cancellation at small strains (engine/physics.md, section 10).
+
+S is a symmetric tensor, s its deviator or its six components. Units are those of the argument; strains have none.
+"""
 
 import math
 
@@ -16,37 +19,37 @@ INVERSE_FACTORIAL = tuple(1.0 / math.factorial(n) for n in range(ORDER + 1))
 
 @ti.func
 def pack(S):
-    """The six components xx, yy, zz, yz, zx, xy of a symmetric tensor."""
+    """Return the six components xx, yy, zz, yz, zx, xy of a symmetric tensor."""
     return vec6(S[0, 0], S[1, 1], S[2, 2], S[1, 2], S[0, 2], S[0, 1])
 
 
 @ti.func
 def unpack(s):
-    """The symmetric tensor of six components."""
+    """Return the symmetric tensor of six components."""
     return mat3(s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3], s[2])
 
 
 @ti.func
 def identity():
-    """The unit tensor."""
+    """Return the unit tensor I."""
     return mat3(1, 0, 0, 0, 1, 0, 0, 0, 1)
 
 
 @ti.func
 def deviator(S):
-    """S without its trace."""
+    """Return S - tr(S) I / 3."""
     return S - S.trace() / 3.0 * identity()
 
 
 @ti.func
 def symmetric(S):
-    """Symmetric part."""
+    """Return the symmetric part of S."""
     return 0.5 * (S + S.transpose())
 
 
 @ti.func
 def norm_squared(S):
-    """S : S."""
+    """Return S : S."""
     total = S[0, 0] * S[0, 0]
     for i, j in ti.static(ti.ndrange(3, 3)):
         if ti.static(i + j > 0):
@@ -55,27 +58,27 @@ def norm_squared(S):
 
 
 @ti.func
-def determinant_increment(A):
-    """det(I + A) - 1, without cancellation for small A."""
+def determinant_increment(H):
+    """Return det(I + H) - 1, without cancellation for small H."""
     minors = (
-        A[0, 0] * A[1, 1]
-        - A[0, 1] * A[1, 0]
-        + A[0, 0] * A[2, 2]
-        - A[0, 2] * A[2, 0]
-        + A[1, 1] * A[2, 2]
-        - A[1, 2] * A[2, 1]
+        H[0, 0] * H[1, 1]
+        - H[0, 1] * H[1, 0]
+        + H[0, 0] * H[2, 2]
+        - H[0, 2] * H[2, 0]
+        + H[1, 1] * H[2, 2]
+        - H[1, 2] * H[2, 1]
     )
-    return A.trace() + minors + A.determinant()
+    return H.trace() + minors + H.determinant()
 
 
 @ti.func
-def half_log(B):
-    """ln V = log(I + B) / 2 of the left Cauchy-Green tensor I + B."""
+def half_log(b_minus_I):
+    """Return ln V = ln(b) / 2 of a left Cauchy-Green tensor b, from b - I."""
     result = mat3(0.0)
-    if norm_squared(B) <= SERIES_LIMIT**2:
-        result = _half_log_series(B)
+    if norm_squared(b_minus_I) <= SERIES_LIMIT**2:
+        result = _half_log_series(b_minus_I)
     else:
-        values, vectors = eigensystem(B)
+        values, vectors = eigensystem(b_minus_I)
         logs = vec3(0.5 * log1p(values[0]), 0.5 * log1p(values[1]), 0.5 * log1p(values[2]))
         result = _assemble(logs, vectors)
     return result
@@ -83,7 +86,7 @@ def half_log(B):
 
 @ti.func
 def exp_minus_identity(S):
-    """exp(S) - I of a traceless symmetric tensor."""
+    """Return exp(S) - I of a traceless symmetric tensor."""
     result = mat3(0.0)
     if norm_squared(S) <= SERIES_LIMIT**2:
         result = _expm1_series(S)
@@ -94,9 +97,9 @@ def exp_minus_identity(S):
 
 
 @ti.func
-def _half_log_series(B):
-    """atanh(Z), Z = B (2I + B)^-1, with powers of Z reduced by its characteristic polynomial."""
-    Z = unpack(pack(B @ (2.0 * identity() + B).inverse()))
+def _half_log_series(b_minus_I):
+    """atanh(Z), Z = (b - I) (b + I)^-1, with powers of Z reduced by its characteristic polynomial."""
+    Z = unpack(pack(b_minus_I @ (2.0 * identity() + b_minus_I).inverse()))
     square = unpack(pack(Z @ Z))
     trace, third = Z.trace(), Z.determinant()
     second = 0.5 * (trace * trace - square.trace())
@@ -123,7 +126,7 @@ def _expm1_series(S):
 
 @ti.func
 def log1p(x):
-    """log(1 + x) with the digits of small x (Goldberg 1991, theorem 4)."""
+    """Return log(1 + x), without cancellation for small x (Goldberg 1991, theorem 4)."""
     y = 1.0 + x
     result = x
     if y != 1.0:
@@ -133,7 +136,7 @@ def log1p(x):
 
 @ti.func
 def expm1(x):
-    """exp(x) - 1 with the digits of small x (Higham 2002, section 1.14.1)."""
+    """Return exp(x) - 1, without cancellation for small x (Higham 2002, section 1.14.1)."""
     y = ti.exp(x)
     result = x
     if y != 1.0 and ti.abs(x) < 1.0:
@@ -155,7 +158,7 @@ def _assemble(values, vectors):
 
 @ti.func
 def eigensystem(S):
-    """Eigenvalues (unordered) and eigenvectors (columns) of a symmetric tensor.
+    """Return eigenvalues (unordered) and eigenvectors (columns) of a symmetric tensor.
 
     The eigenvalue farthest from the other two has a well-conditioned eigenvector; the others follow from
     the 2x2 problem in the plane normal to it, so equal eigenvalues cost no digits (Eberly 2014).
@@ -184,14 +187,14 @@ def eigensystem(S):
 
 @ti.func
 def largest_eigenvalue(s):
-    """Largest eigenvalue of a symmetric traceless tensor, to round-off."""
+    """Return the largest eigenvalue of a symmetric traceless tensor, to round-off."""
     values, _ = eigensystem(s)
     return values.max()
 
 
 @ti.func
 def isolated_eigenvector(s):
-    """Unit eigenvector of the eigenvalue of a traceless tensor that is farthest from the other two."""
+    """Return the unit eigenvector of the eigenvalue of a traceless tensor that is farthest from the other two."""
     scale = ti.sqrt(norm_squared(s) / 6.0)
     result = vec3(1.0, 0.0, 0.0)
     if scale > 0.0:
@@ -205,7 +208,7 @@ def isolated_eigenvector(s):
 
 @ti.func
 def null_vector(M):
-    """Unit vector along the null space of a symmetric tensor of rank two."""
+    """Return a unit vector along the null space of a symmetric tensor of rank two."""
     r0, r1, r2 = vec3(M[0, 0], M[0, 1], M[0, 2]), vec3(M[1, 0], M[1, 1], M[1, 2]), vec3(M[2, 0], M[2, 1], M[2, 2])
     best = r0.cross(r1)
     for candidate in ti.static((r1.cross(r2), r2.cross(r0))):
@@ -216,7 +219,7 @@ def null_vector(M):
 
 @ti.func
 def perpendicular(n):
-    """A unit vector normal to the unit vector n."""
+    """Return a unit vector normal to the unit vector n."""
     result = vec3(-n[2], 0.0, n[0])
     if ti.abs(n[0]) <= ti.abs(n[1]):
         result = vec3(0.0, n[2], -n[1])

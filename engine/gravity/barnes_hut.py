@@ -3,13 +3,12 @@
 A node's true bounding box decides whether its multipole is accepted, so any distribution of particles is allowed.
 """
 
-from typing import Any
-
 import taichi as ti
 
 from engine.device.backend import TASK, on_gpu, vec3
 from engine.device.fields import capacity
 from engine.gravity.multipoles import Multipoles
+from engine.state.particles import Particles
 
 BATCH = 64
 """Accepted nodes that a group of targets collects before their field is summed."""
@@ -23,7 +22,7 @@ class BarnesHut(Multipoles):
     stay in registers. On a GPU every particle walks alone. Arguments as `Multipoles`.
     """
 
-    def __init__(self, particles: Any, radius: float, opening: float) -> None:
+    def __init__(self, particles: Particles, radius: float, opening: float) -> None:
         super().__init__(particles, radius, opening)
         self.by_leaf = not on_gpu()
         self.batch = BATCH if self.by_leaf else 1
@@ -31,7 +30,7 @@ class BarnesHut(Multipoles):
         self.acting = ti.field(ti.i32, capacity(walks * self.batch))
 
     def solve(self, potential: bool) -> None:
-        """Build the tree, then walk it for every group of targets."""
+        """Build the tree, then walk it for every group of targets; argument as `SelfGravity.solve`."""
         self.build()
         self.walk_all(1 << self.depth, self.size, self.room, potential)
 
@@ -50,7 +49,15 @@ class BarnesHut(Multipoles):
 
     @ti.func
     def walk(self, first, rows, lower, upper, leaves, size, room, potential: ti.template()):
-        """Sum over the whole tree for `rows` rows of targets inside one box."""
+        """Sum over the whole tree for some rows of targets.
+
+        Args:
+            first: slot of the first target.
+            rows: number of rows.
+            lower, upper: corners of a box around the targets.
+            leaves, size, room: number of leaves, particles and slots of each, see `Multipoles`.
+            potential: whether potentials are summed, else accelerations.
+        """
         for row in range(rows):
             self.reset(first + row * self.lanes, potential)
         begin = first // (rows * self.lanes) * self.batch
@@ -74,7 +81,7 @@ class BarnesHut(Multipoles):
 
     @ti.func
     def is_far(self, node, lower, upper):
-        """Opening criterion: whether the multipole of a node is accepted for all targets in a box."""
+        """Return whether the multipole of a node is accepted for all targets in a box: the opening criterion."""
         c = self.centre[node]
         centre = vec3(c[0], c[1], c[2])
         gap = ti.max(ti.max(lower - centre, centre - upper), 0.0)
@@ -83,7 +90,7 @@ class BarnesHut(Multipoles):
 
 @ti.func
 def following(node):
-    """Next node of the walk after a node and all below it; 0 after the last."""
+    """Return the next node of the walk after a node and all below it; 0 after the last."""
     n = node
     while n & 1 == 1:
         n >>= 1

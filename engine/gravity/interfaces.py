@@ -1,31 +1,25 @@
 """What a simulation asks of a gravity: accelerations on the device, energy on the host."""
 
-from typing import Any, Protocol
+from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-Scalars = NDArray[np.float64]
-"""One number per particle, shape [particle_count]."""
-
-Vectors = NDArray[np.float64]
-"""One vector per particle, shape [particle_count, 3]."""
-
-Indices = NDArray[np.int64]
-"""Indices of particles."""
+from engine.arrays import Scalars, Vectors
 
 
 class Gravity(Protocol):
     """Acceleration of particles by gravity: `SelfGravity`, `UniformGravity` or `NoGravity`."""
 
-    def at(self, p: Any) -> Any:
+    def at(self, p):
         """Return the acceleration of particle p [m/s^2].
 
         A device function. The transfer calls it in every step: from particles to the grid, and for ballistic particles.
         """
 
-    def energy(self) -> float:
-        """Return the potential energy [J] of the particles at their present positions.
+    def energy(self, x: Vectors, mass: Scalars) -> float:
+        """Return the potential energy [J] of all particles.
 
         Called on the host between steps, for the conserved quantities.
+
+        Args:
+            x: positions [m], shape [particle_count, 3].
+            mass: masses [kg], shape [particle_count].
         """

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from engine.gravity.interfaces import Indices, Vectors
+from engine.arrays import Indices, Vectors
 
 
 def median_order(x: Vectors, levels: int, size: int) -> Indices:

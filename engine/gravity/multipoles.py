@@ -6,17 +6,17 @@ to another, and the leaves follow one another in memory.
 """
 
 import math
-from typing import Any
 
 import numpy as np
 import taichi as ti
 
+from engine.arrays import Indices, Vectors
 from engine.device.backend import Real, mat3, vec3, vec4, vec6
 from engine.device.fields import capacity
 from engine.device.tensors import identity, pack, unpack
-from engine.gravity.interfaces import Indices, Vectors
 from engine.gravity.median_partition import median_order
 from engine.gravity.self_gravity import LANES, SelfGravity
+from engine.state.particles import Particles
 
 LEAF = 24
 """Most particles in a leaf: three rows."""
@@ -43,7 +43,7 @@ class Multipoles(SelfGravity):
         nearest: least distance from the centre of mass at which the multipole of a node is accepted.
     """
 
-    def __init__(self, particles: Any, radius: float, opening: float) -> None:
+    def __init__(self, particles: Particles, radius: float, opening: float) -> None:
         self.depth, self.size = _shape(particles.count)
         self.room = -(-self.size // LANES) * LANES
         super().__init__(particles, radius, self.room << self.depth)
@@ -55,7 +55,7 @@ class Multipoles(SelfGravity):
         self.nearest = ti.field(Real, shape)
 
     def arrange(self, x: Vectors) -> Indices:
-        """Return the particles leaf by leaf, each leaf padded to whole rows."""
+        """Return the particles leaf by leaf, each leaf padded to whole rows; shapes as `SelfGravity.arrange`."""
         leaves = median_order(x, self.depth, self.size)
         padding = np.minimum(leaves[:, :1], ~leaves[:, :1])
         return np.concatenate([leaves, padding.repeat(self.room - self.size, axis=1)], axis=1).ravel()
@@ -102,9 +102,16 @@ class Multipoles(SelfGravity):
 
     @ti.func
     def set_node(self, node, lower, upper, centre, gm, Q):
-        """Store a node and the distance at which its multipole is accepted.
+        """Store a node and the distance at which its multipole is accepted, in the solver's units.
 
         `nearest` is the larger of reach / opening and reach + radius: beyond the second no target is inside a ball.
+
+        Args:
+            node: index of the node.
+            lower, upper: corners of its box.
+            centre: its centre of mass.
+            gm: G_NEWTON times its mass.
+            Q: its traceless quadrupole.
         """
         self.lower[node], self.upper[node] = lower, upper
         self.centre[node] = vec4(centre[0], centre[1], centre[2], gm)
@@ -156,7 +163,7 @@ class Multipoles(SelfGravity):
 
     @ti.func
     def point(self, p):
-        """Position in slot p."""
+        """Return the position in slot p."""
         return vec3(self.x[p], self.y[p], self.z[p])
 
 
@@ -168,11 +175,11 @@ def _shape(count: int) -> tuple[int, int]:
 
 @ti.func
 def row_product(Q, dx, dy, dz):
-    """Components of Q d for a packed tensor and a row of vectors d."""
+    """Return the components of Q d for a packed tensor and a row of vectors d."""
     return Q[0] * dx + Q[5] * dy + Q[4] * dz, Q[5] * dx + Q[1] * dy + Q[3] * dz, Q[4] * dx + Q[3] * dy + Q[2] * dz
 
 
 @ti.func
 def quadrupole_of(gm, d):
-    """Traceless quadrupole of a point mass at d."""
+    """Return the traceless quadrupole gm (3 d d^T - d^2 I) of a point mass at d from the centre."""
     return gm * (3.0 * d.outer_product(d) - d.norm_sqr() * identity())

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.gravity.interfaces import Scalars, Vectors
+from engine.arrays import Scalars, Vectors
 
 TINY = 1e-300
 """Least denominator of a fraction, so that particles at rest give 0."""

@@ -1,16 +1,16 @@
 """Self-gravity of particles: base class of the direct sum and of the tree (engine/physics.md, section 7)."""
 
 from abc import ABC, abstractmethod
-from typing import Any
 
 import numpy as np
 import taichi as ti
 
+from engine.arrays import Indices, Scalars, Vectors
 from engine.constants import G_NEWTON
 from engine.device.backend import Real, on_gpu
 from engine.device.fields import capacity, overwrite
-from engine.gravity.interfaces import Indices, Scalars, Vectors
 from engine.gravity.net_force import NetForce, remove_net_force_and_torque
+from engine.state.particles import Particles
 
 LANES = 8
 """Targets that one CPU thread serves at once: as many doubles as the widest registers hold."""
@@ -23,6 +23,9 @@ class SelfGravity(ABC):
     A solver works in scaled units, the powers of two above the largest coordinate and the largest `gm`: so no power of
     a length leaves the range of single precision. Each component has a field of its own: the values of a row of targets
     are then contiguous, and their sums stay in registers.
+
+    In device functions t is the slot at which a row of targets begins; `potential`, known when they are compiled, says
+    whether potentials are summed, else accelerations.
 
     Args:
         particles: state of the particles.
@@ -37,7 +40,7 @@ class SelfGravity(ABC):
         potential: potential that the solver returns, shape [slots].
     """
 
-    def __init__(self, particles: Any, radius: float, slots: int) -> None:
+    def __init__(self, particles: Particles, radius: float, slots: int) -> None:
         self.particles, self.count = particles, particles.count
         self.acceleration = particles.require("acceleration")
         self.ball, self.radius = radius, ti.field(Real, ())
@@ -60,39 +63,46 @@ class SelfGravity(ABC):
 
     @abstractmethod
     def solve(self, potential: bool) -> None:
-        """Compute the potential if asked for, else the acceleration, of all slots from their positions and gm."""
+        """Compute potential or acceleration of all slots from `x`, `y`, `z` and `gm`, in the solver's units.
+
+        Args:
+            potential: whether the potential is computed, else the acceleration.
+        """
 
     def accelerate(self, ahead: float) -> NetForce:
-        """Set the acceleration to that at positions a time `ahead` [s] of now, without net force and net torque.
+        """Set the acceleration to that at future positions, without net force and net torque.
+
+        Args:
+            ahead: time [s] for which particles are taken to move on straight.
 
         Returns:
             The net force and torque that were removed.
         """
-        x, mass = self._positions(ahead)
-        acceleration, removed = remove_net_force_and_torque(self._pull(x, mass), x, mass)
+        state = self.particles.read("x", "v", "mass")
+        x, mass = state["x"] + ahead * state["v"], state["mass"]
+        acceleration, removed = remove_net_force_and_torque(self.accelerations(x, mass), x, mass)
         self.particles.write({"acceleration": acceleration})
         return removed
 
-    def pull(self, ahead: float) -> Vectors:
-        """Return accelerations [m/s^2] at positions a time `ahead` [s] of now, shape [particle_count, 3]."""
-        return self._pull(*self._positions(ahead))
+    def accelerations(self, x: Vectors, mass: Scalars) -> Vectors:
+        """Return the solver's accelerations [m/s^2], shape [particle_count, 3].
 
-    def energy(self) -> float:
-        """Return the gravitational energy [J] of the particles at their present positions."""
-        state = self.particles.read("x", "mass")
-        potential = self._evaluate(state["x"], state["mass"], self.potential)
-        return 0.5 * float(np.sum(state["mass"] * potential[:, 0]))
-
-    def _positions(self, ahead: float) -> tuple[Vectors, Scalars]:
-        """Positions [m] after straight motion for a time `ahead` [s], and masses [kg]."""
-        state = self.particles.read("x", "v", "mass")
-        return state["x"] + ahead * state["v"], state["mass"]
-
-    def _pull(self, x: Vectors, mass: Scalars) -> Vectors:
+        Args:
+            x: positions [m], shape [particle_count, 3].
+            mass: masses [kg], shape [particle_count].
+        """
         return self._evaluate(x, mass, self.ax, self.ay, self.az)
 
+    def potentials(self, x: Vectors, mass: Scalars) -> Scalars:
+        """Return the potential [J/kg] of all others at each particle, shape [particle_count]; arguments as above."""
+        return self._evaluate(x, mass, self.potential)[:, 0]
+
+    def energy(self, x: Vectors, mass: Scalars) -> float:
+        """Return half the sum of mass times potential [J]; arguments as above."""
+        return 0.5 * float(np.sum(mass * self.potentials(x, mass)))
+
     def _evaluate(self, x: Vectors, mass: Scalars, *wanted: ti.Field) -> Vectors:
-        """The wanted results of a solution in SI units, in the order of the particles."""
+        """Wanted results of a solution in SI units, shape [particle_count, number of results]."""
         slots = self.arrange(x)
         taken = slots >= 0
         particle = np.where(taken, slots, ~slots)
@@ -109,12 +119,12 @@ class SelfGravity(ABC):
 
     @ti.func
     def at(self, p):
-        """Acceleration of particle p [m/s^2], constant between two evaluations."""
+        """Return the acceleration of particle p of the last evaluation."""
         return self.acceleration[p]
 
     @ti.func
     def load(self, values: ti.template(), t):
-        """Values of the row of targets that begins at slot t."""
+        """Return the values of the row of targets that begins at slot t."""
         return self.row([values[t + i] for i in range(self.lanes)])
 
     @ti.func

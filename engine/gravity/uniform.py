@@ -1,10 +1,9 @@
 """Uniform gravity, or none (engine/physics.md, section 11)."""
 
-from typing import Any
-
 import numpy as np
 import taichi as ti
 
+from engine.arrays import Scalars, Vectors
 from engine.device.backend import vec3
 from engine.scene.fields import Vector
 
@@ -14,23 +13,21 @@ class UniformGravity:
     """The same constant acceleration for all particles.
 
     Args:
-        particles: state of the particles.
-        pull: acceleration [m/s^2].
+        acceleration: [m/s^2].
     """
 
-    def __init__(self, particles: Any, pull: Vector) -> None:
-        self.particles, self.pull = particles, vec3.field(shape=())
-        self.pull[None] = pull
+    def __init__(self, acceleration: Vector) -> None:
+        self.acceleration = vec3.field(shape=())
+        self.acceleration[None] = acceleration
 
     @ti.func
     def at(self, p):
-        """Acceleration of particle p [m/s^2]."""
-        return self.pull[None]
+        """Return the acceleration of every particle."""
+        return self.acceleration[None]
 
-    def energy(self) -> float:
-        """Return the potential energy [J] of the particles, -sum of m g.x: zero at the origin."""
-        state = self.particles.read("x", "mass")
-        return -float(np.sum(state["mass"] * (state["x"] @ self.pull.to_numpy())))
+    def energy(self, x: Vectors, mass: Scalars) -> float:
+        """Return -sum of m g.x [J], zero at the origin."""
+        return -float(np.sum(mass * (x @ self.acceleration.to_numpy())))
 
 
 @ti.data_oriented
@@ -39,9 +36,9 @@ class NoGravity:
 
     @ti.func
     def at(self, p):
-        """Acceleration of particle p: 0."""
+        """Return zero."""
         return vec3(0.0)
 
-    def energy(self) -> float:
-        """Return 0."""
+    def energy(self, x: Vectors, mass: Scalars) -> float:
+        """Return zero."""
         return 0.0

@@ -1,1 +1,1 @@
-"""A run on disk: the job directory, its files, and the session that writes them."""
+"""A job on disk: its directory, its files, and the session that runs it."""

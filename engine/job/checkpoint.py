@@ -1,7 +1,6 @@
-"""Saving everything the next step reads, so that a resumed run equals an uninterrupted one bit for bit."""
+"""Checkpoints: all that the next step reads, so that a resumed run equals an uninterrupted one bit for bit."""
 
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
@@ -11,45 +10,51 @@ from engine.job.directory import JobDirectory
 from engine.job.storage import is_finite, read_dataset, write_dataset
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
-from engine.state.particles import Particles
+from engine.state.particles import Arrays
 
-CLOCK = {"time": float, "dt": float, "rate": float, "step": int, "moved_out": int}
-"""Fields of the clock that outlive a pause."""
-
-EVENTS = ("gravity_due", "gravity_change", "gravity_force", "gravity_torque")
-"""Attributes of the simulation that do."""
-
-ATTRIBUTES = {*CLOCK, *EVENTS, "physics_version", "scene_hash"}
-"""What no checkpoint lacks beside the particles."""
+ORIGIN = ("physics_version", "scene_hash")
+"""Attributes that say which runs may go on from a checkpoint."""
 
 
-def save_checkpoint(job: JobDirectory, simulation: Simulation, progress: dict[str, float]) -> None:
-    """Write a checkpoint; the one before it is kept.
+def save_checkpoint(
+    job: JobDirectory, simulation: Simulation, progress: dict[str, float], state: Arrays | None = None
+) -> None:
+    """Write a checkpoint and keep the one before it.
 
     Args:
         job: the job directory.
         simulation: what to save, between two calls of `advance`.
-        progress: what the caller needs to go on, such as the times of its next outputs.
+        progress: numbers that the caller needs to go on, such as the times of its next outputs [s].
+        state: all fields of the particles at this time; read from the device if `None`.
+
+    Raises:
+        OSError: the file cannot be written.
     """
-    state = simulation.particles.read(*simulation.particles.allocated)
-    variables = {name: (_dimensions(name, values.ndim), values) for name, values in state.items()}
-    clock = {name: kind(getattr(simulation.clock, name)[None]) for name, kind in CLOCK.items()}
-    events = {name: float(getattr(simulation, name)) for name in EVENTS}
-    attributes: dict[str, Any] = {"physics_version": PHYSICS_VERSION, "scene_hash": simulation.scene.hash()}
-    dataset = xr.Dataset(variables, attrs={**attributes, **clock, **events, **progress})
+    names = simulation.particles.allocated
+    state = simulation.particles.read(*names) if state is None else state
+    variables = {name: (_dimensions(name, state[name].ndim), state[name]) for name in names}
+    origin = {"physics_version": PHYSICS_VERSION, "scene_hash": simulation.scene.hash()}
+    dataset = xr.Dataset(variables, attrs={**origin, **simulation.clock_state(), **progress})
     if job.checkpoint.exists():
         job.checkpoint.replace(job.previous_checkpoint)
     write_dataset(job.checkpoint, dataset)
 
 
 def load_checkpoint(job: JobDirectory, simulation: Simulation) -> dict[str, float] | None:
-    """Restore the newest readable checkpoint; returns the `progress` it was saved with, `None` if there is none.
+    """Restore the newest readable checkpoint.
+
+    Args:
+        job: the job directory.
+        simulation: not started yet; receives the state.
+
+    Returns:
+        The `progress` that was saved with it, `None` if there is no checkpoint.
 
     Raises:
         JobError: the checkpoint belongs to another scene or physics version.
     """
     for path in (job.checkpoint, job.previous_checkpoint):
-        dataset = _readable(path, simulation.particles)
+        dataset = _readable(path, simulation)
         if dataset is not None:
             refuse_foreign(dataset, simulation.scene, path)
             return _restore(dataset, simulation)
@@ -57,10 +62,15 @@ def load_checkpoint(job: JobDirectory, simulation: Simulation) -> dict[str, floa
 
 
 def refuse_foreign(dataset: xr.Dataset, scene: Scene, path: Path) -> None:
-    """Accept only what a run of this scene, with this version of physics, has written.
+    """Check that a run of this scene, with this version of physics, has written a file.
+
+    Args:
+        dataset: the content of the file.
+        scene: what is to be run.
+        path: the file, for the message.
 
     Raises:
-        JobError: the file at `path` belongs to another scene or physics version.
+        JobError: it belongs to another scene or physics version.
     """
     if int(dataset.attrs["physics_version"]) != PHYSICS_VERSION:
         raise JobError(
@@ -75,23 +85,22 @@ def _dimensions(name: str, ndim: int) -> tuple[str, ...]:
     return ("particle", *(f"{name}_{axis}" for axis in range(1, ndim)))
 
 
-def _readable(path: Path, particles: Particles) -> xr.Dataset | None:
+def _readable(path: Path, simulation: Simulation) -> xr.Dataset | None:
+    """Content of a checkpoint; `None` where it is missing, damaged, incomplete or not finite."""
     if not path.exists():
         return None
     try:
         dataset = read_dataset(path)
     except JobError:
         return None
-    whole = set(particles.allocated) <= set(dataset.data_vars) and set(dataset.attrs) >= ATTRIBUTES
+    particles = simulation.particles
+    whole = {*particles.allocated} <= {*dataset.data_vars} and {*ORIGIN, *simulation.clock_state()} <= {*dataset.attrs}
     return dataset if whole and dataset.sizes["particle"] == particles.count and is_finite(dataset) else None
 
 
 def _restore(dataset: xr.Dataset, simulation: Simulation) -> dict[str, float]:
-    attributes = dict(dataset.attrs)
-    simulation.particles.write({name: dataset[name].values for name in simulation.particles.allocated})
-    simulation.use_stored_blocks()
-    for name, kind in CLOCK.items():
-        getattr(simulation.clock, name)[None] = kind(attributes.pop(name))
-    for name in EVENTS:
-        setattr(simulation, name, float(attributes.pop(name)))
-    return {name: float(value) for name, value in attributes.items() if name not in ("physics_version", "scene_hash")}
+    """Set the state of a simulation and return the progress."""
+    numbers = {name: value.item() for name, value in dataset.attrs.items() if name not in ORIGIN}
+    clock_state = {name: numbers.pop(name) for name in simulation.clock_state()}
+    simulation.restore({name: dataset[name].values for name in simulation.particles.allocated}, clock_state)
+    return numbers

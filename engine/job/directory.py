@@ -1,4 +1,4 @@
-"""The job directory: which files it holds, who is running it, and how far it is."""
+"""The job directory: its files, the process that runs it, and how far it is."""
 
 import fcntl
 import os
@@ -30,9 +30,11 @@ class JobState(StrEnum):
 
 
 WRITTEN = (JobState.PENDING, JobState.RUNNING, JobState.INTERRUPTED, JobState.DONE, JobState.FAILED)
-"""States that status.json may hold."""
+"""States that a run writes to status.json."""
+
 HEARTBEAT_PERIOD = 2.0
 """Time [s] between two writes of status.json by a run."""
+
 HEARTBEAT_LIMIT = 120.0
 """Age [s] at which the heartbeat of a run on another host counts as stopped."""
 
@@ -42,10 +44,10 @@ class Status:
     """Content of status.json, as a run last wrote it.
 
     Attributes:
-        state: `running`, `interrupted`, `done` or `failed`; readers derive `pending`, and what a dead process left.
-        reason: one line on a failure, empty otherwise.
-        fault: the same in parts, when a guard stopped the run.
-        time, start_time, end_time: simulated time [s], now and at both ends.
+        state: one of `WRITTEN`; `JobDirectory.status` corrects that of a process that has died.
+        reason: why the run ended before its end time, in one line; empty if it did not.
+        fault: the reason in parts, if the guard stopped the run.
+        time, start_time, end_time: simulated time [s], now, at the start and at the end.
         step: time steps done.
         wall_time: computing time [s] of all sessions of this job.
         cpu_time: processor time [s] of all their threads.
@@ -73,7 +75,7 @@ class Status:
 
     @property
     def progress(self) -> float:
-        """Share of the simulated time that is done, 0 to 1."""
+        """Fraction of the simulated time that is done, 0 to 1."""
         span = self.end_time - self.start_time
         return (self.time - self.start_time) / span if span > 0.0 else 0.0
 
@@ -83,7 +85,11 @@ _STATUS = TypeAdapter(Status)
 
 @dataclass(frozen=True)
 class JobDirectory:
-    """Names of the files of one job."""
+    """Files of one job.
+
+    Attributes:
+        path: the directory.
+    """
 
     path: Path
 
@@ -94,7 +100,7 @@ class JobDirectory:
 
     @property
     def log(self) -> Path:
-        """What the run reported, appended."""
+        """Log of all sessions."""
         return self.path / "log.txt"
 
     @property
@@ -104,7 +110,7 @@ class JobDirectory:
 
     @property
     def final(self) -> Path:
-        """Particles at the end; there only when the job is done."""
+        """Particles at the end; exists only when the job is done."""
         return self.path / "final.nc"
 
     @property
@@ -114,7 +120,7 @@ class JobDirectory:
 
     @property
     def checkpoint(self) -> Path:
-        """Everything the next step reads."""
+        """The last checkpoint."""
         return self.path / "checkpoint.nc"
 
     @property
@@ -128,11 +134,11 @@ class JobDirectory:
         return self.path / "snapshots"
 
     def snapshot(self, step: int) -> Path:
-        """Particles after a time step; sorted by name, snapshots are in order of time."""
+        """Particles after a number of time steps; sorted by name, snapshots are in order of time."""
         return self.snapshots / f"{step:010d}.nc"
 
     def status(self) -> Status:
-        """How the job stands now: a run whose process is gone reads `interrupted`, none at all `pending`.
+        """Return how the job stands now: `interrupted` if its process has died, `pending` if it was never run.
 
         Raises:
             JobError: status.json is damaged.
@@ -154,7 +160,11 @@ class JobDirectory:
         return status
 
     def write_status(self, status: Status) -> None:
-        """Write status.json in the name of this process, now."""
+        """Write status.json with the time and the process of this call.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
         process = psutil.Process()
         own = {
             "heartbeat": time.time(),
@@ -166,7 +176,7 @@ class JobDirectory:
 
     @contextmanager
     def claim(self) -> Iterator[None]:
-        """Hold the job for this process; the claim dies with the process.
+        """Lock the job for this process, until the `with` block or the process ends.
 
         Raises:
             JobBusyError: another process runs this job.
@@ -188,7 +198,7 @@ class JobDirectory:
 
 
 def _is_alive(status: Status) -> bool:
-    """Whether the process that wrote `status` still runs; across hosts its heartbeat decides."""
+    """Whether the process that wrote a status still runs; on another host, whether its heartbeat is recent."""
     if status.host != socket.gethostname():
         return abs(time.time() - status.heartbeat) < HEARTBEAT_LIMIT
     try:

@@ -1,4 +1,4 @@
-"""Where results come from: command, code, packages and device of every session of a job."""
+"""Provenance of results: command, code, packages and device of every session of a job."""
 
 import hashlib
 import json
@@ -9,7 +9,6 @@ import sys
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
 
 from engine import PHYSICS_VERSION
 from engine.device.backend import Real
@@ -21,7 +20,17 @@ PACKAGES = ("asteroid-collisions", "taichi", "numpy", "scipy", "xarray", "netCDF
 
 
 def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> None:
-    """Add this session to provenance.json."""
+    """Add this session to provenance.json.
+
+    Args:
+        job: the job directory.
+        scene: what is run.
+        arch: `cpu` or `cuda`.
+        threads: CPU threads.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
     sessions = [*_earlier_sessions(job), _session(arch, threads)]
     content = {
         "physics_version": PHYSICS_VERSION,
@@ -32,14 +41,14 @@ def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> 
     write_json(job.provenance, content)
 
 
-def _earlier_sessions(job: JobDirectory) -> list[Any]:
+def _earlier_sessions(job: JobDirectory) -> list[object]:
     try:
         return list(json.loads(job.provenance.read_text(encoding="utf-8"))["sessions"])
     except (OSError, ValueError, KeyError, TypeError):
         return []
 
 
-def _session(arch: str, threads: int) -> dict[str, Any]:
+def _session(arch: str, threads: int) -> dict[str, object]:
     return {
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "command": sys.argv,
@@ -61,8 +70,8 @@ def _version(package: str) -> str:
         return "not installed"
 
 
-def _git_state() -> dict[str, Any]:
-    """Commit of the code, whether it was changed since, and a hash of the change."""
+def _git_state() -> dict[str, object]:
+    """Commit of the code, whether the code differs from it, and a hash of the difference."""
     try:
         commit = _git("rev-parse", "HEAD").decode().strip()
         difference = _git("diff", "HEAD")

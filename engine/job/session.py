@@ -1,4 +1,4 @@
-"""Running one job directory: from its scene or checkpoint to its final state."""
+"""Session of a job: run it from its scene or its last checkpoint to its end."""
 
 import logging
 import signal
@@ -8,9 +8,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import FrameType
-from typing import Any
 
 import numpy as np
+from numpy.typing import DTypeLike
 from xarray import Dataset
 
 from engine import PHYSICS_VERSION
@@ -21,18 +21,19 @@ from engine.job.directory import HEARTBEAT_PERIOD, JobDirectory, Status
 from engine.job.history import History
 from engine.job.provenance import record_session
 from engine.job.snapshot import FIELDS, snapshot
-from engine.job.storage import read_dataset, write_dataset
+from engine.job.storage import Attributes, read_dataset, write_dataset
 from engine.scene.scene import Scene, scene_in
 from engine.simulation.conservation import Row, as_row
 from engine.simulation.guard import Guard
 from engine.simulation.simulation import Simulation
+from engine.state.particles import Arrays
 
 log = logging.getLogger("engine")
 
 
 @dataclass(frozen=True)
 class Options:
-    """How to run, without influence on results.
+    """Options of a session, without influence on results.
 
     Attributes:
         arch: `cpu` or `cuda`.
@@ -48,7 +49,14 @@ class Options:
 
 
 def run_job(directory: Path, options: Options) -> Status:
-    """Run or resume the job in `directory` and return how it stands: done, failed or interrupted.
+    """Run a job, from its last checkpoint if it has one.
+
+    Args:
+        directory: contains the scene.
+        options: of this session.
+
+    Returns:
+        How the job then stands: done, failed or interrupted.
 
     Raises:
         SceneError: the directory holds no valid scene.
@@ -71,7 +79,7 @@ def run_job(directory: Path, options: Options) -> Status:
 
 
 def _leave_word(job: JobDirectory, error: Exception) -> None:
-    """Say what ended a run that nothing foresaw, unless there is no room left for it."""
+    """Write an unexpected error to log and status, unless the disk is full."""
     log.exception("ended by an error")
     reason = " ".join(f"{type(error).__name__}: {error}".split())
     with suppress(OSError):
@@ -79,7 +87,19 @@ def _leave_word(job: JobDirectory, error: Exception) -> None:
 
 
 class Run:
-    """One session of a job."""
+    """One session of a job.
+
+    Args:
+        scene: what to simulate.
+        job: its directory, claimed by this process.
+        options: of this session.
+
+    Attributes:
+        simulation: the scene on the device.
+        history: rows so far, those of earlier sessions included.
+        history_due, snapshot_due: simulated time [s] of the next row and of the next snapshot.
+        guard: bounds of the run.
+    """
 
     def __init__(self, scene: Scene, job: JobDirectory, options: Options) -> None:
         self.scene, self.job, self.options = scene, job, options
@@ -95,7 +115,7 @@ class Run:
         self.stopping = False
 
     def to_end(self) -> Status:
-        """Go on until the end time, a fault, or a signal to stop."""
+        """Advance until the end time, a fault, or a signal to stop, and return how the job then stands."""
         previous = {number: signal.signal(number, self._stop) for number in (signal.SIGINT, signal.SIGTERM)}
         try:
             self._begin()
@@ -122,14 +142,14 @@ class Run:
         else:
             self._restore(progress, history)
             log.info("resumed at t = %.6g s, step %d", self.simulation.time, self.simulation.step)
-        first = self.history.rows[0] if self.history.rows else self._row()
+        first = self.history.rows[0] if self.history.rows else self._row(self.simulation.particles.read())
         self.guard = Guard(self.scene, first, self.simulation.first_dt)
         record_session(self.job, self.scene, self.options.arch, self.options.threads)
         self._write_outputs()
         self._report("running")
 
     def _written_history(self) -> Dataset | None:
-        """What an earlier session wrote, always before its checkpoint; `None` where it cannot be read."""
+        """History that an earlier session wrote, always before its checkpoint; `None` if it cannot be read."""
         try:
             return read_dataset(self.job.history)
         except JobError:
@@ -161,7 +181,7 @@ class Run:
         self.guard.check_time_step(simulation.next_dt, simulation.time, simulation.particles)
 
     def _write_outputs(self) -> None:
-        """Record what has come due; the last state of all is always recorded."""
+        """Write the row and the snapshot that are due; a row is always due at the end time."""
         output, simulation = self.scene.output, self.simulation
         if simulation.time >= self.history_due or (simulation.finished and self.history_due < np.inf):
             self._append_history()
@@ -171,33 +191,34 @@ class Run:
             self.snapshot_due = simulation.time + (output.snapshot_interval or np.inf)
 
     def _append_history(self) -> None:
-        row = self._row()
-        self._check(row)
+        row, _ = self._checked()
         self.history.append(row)
 
-    def _row(self) -> Row:
-        """The row of the history for the present moment."""
-        simulation = self.simulation
-        state = simulation.particles.read("v", "j", "damage_root")
+    def _checked(self) -> tuple[Row, Arrays]:
+        """Return the row of the history for the present time and the state of all particles, passed by the guard."""
+        state = self.simulation.particles.read()
+        row = self._row(state)
+        self.guard.check(row, state)
+        return row, state
+
+    def _row(self, state: Arrays) -> Row:
+        """Row of the history for the present time, from all fields of all particles."""
+        simulation, events = self.simulation, self.simulation.events
         return as_row(
-            simulation.totals(),
+            simulation.totals(state),
             time=simulation.time,
             step=simulation.step,
             dt=float(simulation.clock.dt[None]),
-            gravity_change=simulation.gravity_change,
-            gravity_force=simulation.gravity_force,
-            gravity_torque=simulation.gravity_torque,
+            gravity_change=events.gravity_change,
+            gravity_force=events.gravity_force,
+            gravity_torque=events.gravity_torque,
             largest_speed=float(np.linalg.norm(state["v"], axis=1).max()),
             largest_compression=float(1.0 / (1.0 + state["j"].min())),
             damaged_fraction=float(np.mean(state["damage_root"] ** 3)),
             isolated=float(simulation.stencil.ballistic_count[None]),
         )
 
-    def _check(self, row: Row) -> None:
-        """Let nothing be written that the guard has not passed."""
-        self.guard.check(row, self.simulation.particles.read())
-
-    def _attributes(self) -> dict[str, Any]:
+    def _attributes(self) -> Attributes:
         return {
             "time": self.simulation.time,
             "step": self.simulation.step,
@@ -207,24 +228,24 @@ class Run:
             "physics_version": PHYSICS_VERSION,
         }
 
-    def _particles(self, dtype: type) -> Any:
-        state = self.simulation.particles.read(*FIELDS)
+    def _snapshot(self, state: Arrays, dtype: DTypeLike) -> Dataset:
         return snapshot(state, self.simulation.rho0(state), self._attributes(), dtype)
 
     def _write_snapshot(self) -> None:
         self.job.snapshots.mkdir(exist_ok=True)
-        write_dataset(self.job.snapshot(self.simulation.step), self._particles(np.float32))
+        state = self.simulation.particles.read(*FIELDS)
+        write_dataset(self.job.snapshot(self.simulation.step), self._snapshot(state, np.float32))
 
     def _write_history(self) -> None:
-        attributes = {"scene_hash": self.scene.hash(), "physics_version": PHYSICS_VERSION}
+        attributes: Attributes = {"scene_hash": self.scene.hash(), "physics_version": PHYSICS_VERSION}
         write_dataset(self.job.history, self.history.dataset(attributes))
 
     def _save(self) -> None:
-        """Write history, then checkpoint: a resumed run drops rows that are newer than its checkpoint."""
-        self._check(self._row())
+        """Write the history, then the checkpoint: a resumed run drops rows that are later than its checkpoint."""
+        _, state = self._checked()
         self._write_history()
         due = {"history_due": self.history_due, "snapshot_due": self.snapshot_due, "wall_time": self._wall_time()}
-        save_checkpoint(self.job, self.simulation, {**due, "cpu_time": self._cpu_time()})
+        save_checkpoint(self.job, self.simulation, {**due, "cpu_time": self._cpu_time()}, state)
         self.saved = time.monotonic()
 
     def _wall_time(self) -> float:
@@ -255,9 +276,9 @@ class Run:
         return status
 
     def _finish(self) -> Status:
-        self._check(self._row())
+        _, state = self._checked()
         self._write_history()
-        write_dataset(self.job.final, self._particles(np.float64))
+        write_dataset(self.job.final, self._snapshot(state, np.float64))
         log.info("done: %d steps in %.1f s", self.simulation.step, self._wall_time())
         return self._report("done")
 
@@ -267,7 +288,7 @@ class Run:
         return self._report("interrupted", "stopped by a signal; run again to resume")
 
     def _fail(self, fault: Fault) -> Status:
-        """Keep the last checkpoint as it is and say what stopped the run."""
+        """Report the fault that stopped the run; the last checkpoint stays as it is."""
         if self.history.rows:
             self._write_history()
         log.error("failed: %s", fault)

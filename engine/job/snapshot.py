@@ -1,25 +1,26 @@
-"""The particles of one moment as a data set."""
-
-from typing import Any
+"""Particles at one time as a data set."""
 
 import numpy as np
 import xarray as xr
+from numpy.typing import DTypeLike, NDArray
 
+from engine.arrays import Scalars
+from engine.job.storage import Attributes
 from engine.quantities import PARTICLES, SPACE
 from engine.state.particles import Arrays
 
 FIELDS = ("x", "v", "mass", "j", "E", "damage_root", "body")
-"""Particle fields that a snapshot is made of."""
+"""Fields of the particles that a snapshot is computed from."""
 
 
-def snapshot(state: Arrays, rho0: Any, attributes: dict[str, Any], dtype: type = np.float64) -> xr.Dataset:
-    """Particles as they are now.
+def snapshot(state: Arrays, rho0: Scalars, attributes: Attributes, dtype: DTypeLike = np.float64) -> xr.Dataset:
+    """Return the variables of engine/quantities.PARTICLES, dimensions `particle` and `space`.
 
     Args:
-        state: the fields `FIELDS`.
+        state: the fields `FIELDS` of every particle.
         rho0: reference density of every particle [kg/m^3], shape [particle_count].
-        attributes: what to say of the whole, among it `time` [s] and `spacing` [m].
-        dtype: precision on disk.
+        attributes: global attributes, `time` [s] and `spacing` [m] among them.
+        dtype: precision of all variables but `body`.
     """
     J = 1.0 + state["j"]
     values = {
@@ -36,6 +37,6 @@ def snapshot(state: Arrays, rho0: Any, attributes: dict[str, Any], dtype: type =
     return xr.Dataset(variables, {"space": list(SPACE)}, {"Conventions": "CF-1.11", **attributes})
 
 
-def _variable(name: str, values: Any) -> xr.Variable:
+def _variable(name: str, values: NDArray[np.generic]) -> xr.Variable:
     quantity = PARTICLES[name]
     return xr.Variable(quantity.dims("particle"), values, quantity.attributes())

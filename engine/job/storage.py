@@ -1,27 +1,33 @@
-"""Files that are either whole or absent: written under another name, flushed to disk, then renamed."""
+"""Atomic writing of files: under another name, flushed to disk, then renamed."""
 
 import errno
 import json
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from engine.errors import JobError
 
+Attributes = Mapping[str, str | int | float]
+"""Global attributes of a data set."""
+
 FULL = 1 << 20
-"""Free bytes below which a disk counts as full."""
+"""Free space [bytes] below which a disk counts as full."""
 
 
 def write_atomically(path: Path, write: Callable[[Path], None]) -> None:
-    """Let `write` fill a neighbour of `path`, then move it there; on any failure `path` stays as it was.
+    """Write a file completely or not at all.
+
+    Args:
+        path: the file; on failure it stays as it was.
+        write: writes the content to the path it is given.
 
     Raises:
-        OSError: it cannot be written; names `path` and the cause.
+        OSError: the file cannot be written; names it and the cause.
     """
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
@@ -36,7 +42,7 @@ def write_atomically(path: Path, write: Callable[[Path], None]) -> None:
 
 
 def _cause(error: OSError | RuntimeError, path: Path) -> OSError:
-    """What kept a file from being written; netCDF gives a full disk many names."""
+    """Why a file could not be written; netCDF reports a full disk in many ways."""
     code = error.errno if isinstance(error, OSError) and error.errno else errno.EIO
     if code == errno.ENOSPC or shutil.disk_usage(path.parent).free < FULL:
         return OSError(errno.ENOSPC, "cannot be written, the disk is full: free some space", str(path))
@@ -44,18 +50,26 @@ def _cause(error: OSError | RuntimeError, path: Path) -> OSError:
 
 
 def remove_partial_files(directory: Path) -> None:
-    """Remove what processes left that were killed while they wrote; nobody else may write there now."""
+    """Remove the files that killed processes left half written; no other process may be writing there."""
     for partial in directory.glob(".*.partial"):
         partial.unlink(missing_ok=True)
 
 
-def write_json(path: Path, content: dict[str, Any]) -> None:
-    """Write `content` as indented JSON."""
+def write_json(path: Path, content: Mapping[str, object]) -> None:
+    """Write indented JSON.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
     write_text(path, json.dumps(content, indent=1, sort_keys=True) + "\n")
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text in UTF-8."""
+    """Write a text in UTF-8.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
     write_atomically(path, lambda partial: _fill(partial, text))
 
 
@@ -64,12 +78,16 @@ def _fill(path: Path, text: str) -> None:
 
 
 def write_dataset(path: Path, dataset: xr.Dataset) -> None:
-    """Write a data set as netCDF-4; equal data sets give equal values, attributes and layout."""
+    """Write a data set as netCDF-4.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
     write_atomically(path, lambda partial: dataset.to_netcdf(partial, engine="netcdf4"))
 
 
 def read_dataset(path: Path) -> xr.Dataset:
-    """The whole data set in a file, in memory.
+    """Read a whole data set into memory.
 
     Raises:
         JobError: the file is missing or not a complete netCDF file.

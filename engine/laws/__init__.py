@@ -1,1 +1,1 @@
-"""The response of one particle to its deformation; no grid."""
+"""Laws of matter: the response of one particle to its deformation, without a grid."""

@@ -1,4 +1,4 @@
-"""Damage of particles, or matter that has none (engine/physics.md, section 5)."""
+"""Damage of particles, or none (engine/physics.md, section 5)."""
 
 import taichi as ti
 
@@ -9,11 +9,11 @@ from engine.state.particles import Particles
 
 @ti.data_oriented
 class Damage:
-    """Damage as its cube root, which grows at constant speed.
+    """Damage, stored as its cube root, which grows at constant speed.
 
     Args:
         particles: state of the particles.
-        fracture: growth of damage.
+        fracture: growth of the cube root.
     """
 
     def __init__(self, particles: Particles, fracture: GrowthLaw) -> None:

@@ -8,7 +8,7 @@ from engine.state.particles import Particles
 
 @ti.data_oriented
 class InternalEnergy:
-    """Specific internal energy [J/kg]: the work of all stress.
+    """Specific internal energy [J/kg], the work of all stress.
 
     Args:
         particles: state of the particles.
@@ -30,7 +30,7 @@ class InternalEnergy:
 
 @ti.data_oriented
 class NoInternalEnergy:
-    """Matter without internal energy: its pressure depends on density alone."""
+    """No internal energy: pressure depends on density alone."""
 
     @ti.func
     def after(self, p, work):

@@ -1,4 +1,4 @@
-"""Weibull flaws: at which strain each crack in a body becomes active (engine/physics.md, section 5)."""
+"""Weibull flaws of a body and the strains that activate them (engine/physics.md, section 5; Benz & Asphaug 1994)."""
 
 from dataclasses import dataclass
 
@@ -23,18 +23,24 @@ class Flaws:
 
 
 def draw_flaws(body: Body, fracture: FractureRules, generator: np.random.Generator) -> Flaws:
-    """Flaws of one body, the weakest first, each given to a random particle."""
+    """Draw the flaws of one body: flaw n = 1, 2, ... has strain (n / (k V))^(1/m) and falls on a random particle.
+
+    Args:
+        body: its volume V [m^3], and Weibull's k [m^-3] and m [-] of its material.
+        fracture: says how many flaws are drawn.
+        generator: of the random numbers.
+    """
     owner = _owners(body.count, fracture, generator)
     number = np.arange(1, len(owner) + 1)
-    material = body.material
-    strain = (number / (material.weibull_k * body.volume)) ** (1.0 / material.weibull_m)
+    k, m = body.material.known("weibull_k"), body.material.known("weibull_m")
+    strain = (number / (k * body.volume)) ** (1.0 / m)
     order = np.argsort(owner, kind="stable")
     first = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=body.count))])
     return Flaws(first.astype(np.int32), strain[order])
 
 
 def _owners(particles: int, fracture: FractureRules, generator: np.random.Generator) -> NDArray[np.int64]:
-    """The particle that each flaw falls on."""
+    """Particle that each flaw falls on, shape [flaw_count]."""
     if fracture.flaws == "2NlnN":
         return np.asarray(generator.integers(particles, size=round(2.0 * particles * np.log(particles))))
     owners = generator.integers(particles, size=particles)
@@ -45,7 +51,7 @@ def _owners(particles: int, fracture: FractureRules, generator: np.random.Genera
 
 
 def join(flaws: list[Flaws]) -> Flaws:
-    """The flaws of several bodies as one list, particles in the order of the bodies."""
+    """Return the flaws of several bodies as those of one, particles in the order of the bodies."""
     offsets = np.cumsum([0] + [len(part.strain) for part in flaws])
     first = [part.first[:-1] + offset for part, offset in zip(flaws, offsets, strict=False)]
     return Flaws(np.concatenate([*first, offsets[-1:]]).astype(np.int32), np.concatenate([p.strain for p in flaws]))

@@ -14,7 +14,7 @@ from engine.scene.material import FractureRules, Material
 
 @ti.data_oriented
 class Fracture:
-    """Damage of one particle from its tensile strain and its flaws.
+    """Growth of damage under tension that activates flaws.
 
     Args:
         bodies: bodies of the scene, in order.
@@ -33,7 +33,10 @@ class Fracture:
 
     @ti.func
     def grow(self, root, s, P, dt, p, body):
-        """Return root + n_open rate dt, at most (n_open/n_all)^(1/3), where a flaw of particle p is open."""
+        """Return root + n rate dt, at most (n_open / n_all)^(1/3), where a flaw of particle p is active.
+
+        n is the number of active flaws, or 1, by the rule of the parameter set.
+        """
         m = self.table[body]
         result, first, total = root, self.first[p], self.first[p + 1] - self.first[p]
         if root < 1.0 and total > 0:
@@ -49,7 +52,7 @@ class Fracture:
 
     @ti.func
     def _active(self, strain, p):
-        """Number of the particle's flaws that open at this strain."""
+        """Number of flaws of particle p that are active at a strain [-]."""
         flaw, end = self.first[p], self.first[p + 1]
         while flaw < end and self.strain[flaw] < strain:
             flaw += 1
@@ -58,7 +61,7 @@ class Fracture:
 
 @ti.data_oriented
 class Unbreakable:
-    """Matter whose damage stays as it is at the start."""
+    """Constant damage."""
 
     @ti.func
     def grow(self, root, s, P, dt, p, body):
@@ -67,11 +70,11 @@ class Unbreakable:
 
 
 def _growth_rate(rule: FractureRules, body: Body) -> float:
-    """Growth of the cube root of damage by one crack [1/s]: crack speed over the range of growth."""
+    """Growth rate of the cube root of damage by one crack [1/s]: crack speed over the range of growth."""
     crack_speed = rule.growth_speed * body.material.longitudinal_speed
     return crack_speed / (rule.growth_range * body.spacing)
 
 
 def _strain_modulus(rule: FractureRules, material: Material) -> float:
-    """Modulus [Pa] that turns the largest tensile stress into the local strain."""
+    """Modulus [Pa]: largest tensile stress over local strain."""
     return material.young_modulus if rule.strain == "young" else material.longitudinal_modulus

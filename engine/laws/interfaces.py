@@ -10,7 +10,7 @@ from typing import Protocol
 
 
 class EquationOfStateLaw(Protocol):
-    """Pressure and speed of sound (engine/physics.md, section 2)."""
+    """Pressure, speed of sound and reference density (engine/physics.md, section 2)."""
 
     def evaluate(self, p, mu, E, body):
         """Return the pressure [Pa] and the squared speed of sound [m^2/s^2].
@@ -21,6 +21,9 @@ class EquationOfStateLaw(Protocol):
             E: specific internal energy [J/kg].
             body: index of the body.
         """
+
+    def rho0(self, body):
+        """Return the density of the reference state [kg/m^3]."""
 
 
 class EnergyLaw(Protocol):
@@ -70,12 +73,12 @@ class GrowthLaw(Protocol):
 class ShearLaw(Protocol):
     """Deviatoric stress, limited by a strength (engine/physics.md, sections 3 and 4)."""
 
-    def stress(self, p, A, growth, J, P, E, D, body):
+    def stress(self, p, H, growth, J, P, E, D, body):
         """Return the deviatoric Kirchhoff stress [Pa] and store the elastic strain of particle p.
 
         Args:
             p: index of the particle.
-            A: displacement gradient dt L of the step [-].
+            H: displacement gradient dt L of the step [-].
             growth: det(I + H) - 1 [-].
             J: rho0/rho after the step [-].
             P: pressure [Pa].

@@ -1,7 +1,7 @@
-"""Shear stress of particles: Hencky's law up to the strength, or none (engine/physics.md, sections 1, 3 and 4).
+"""Shear stress: Hencky's law up to the strength, or none (engine/physics.md, sections 1, 3 and 4; Klar et al. 2016).
 
-The state is `B`, the left Cauchy-Green tensor of the isochoric elastic strain minus I. Storing B and j = det F - 1
-instead of F keeps the digits of strains of 1e-6; an isotropic law does not see the rotation in F.
+The state is b - I, with b = J^(-2/3) F F^T the isochoric left Cauchy-Green tensor of the elastic strain. Storing b - I
+and j = J - 1 instead of F keeps the digits of strains of 1e-6; an isotropic law does not see the rotation in F.
 """
 
 from collections.abc import Sequence
@@ -25,12 +25,12 @@ from engine.scene.material import Material
 from engine.state.particles import Particles
 
 SMALL_GROWTH = 0.1
-"""Change of volume in one step up to which its powers come from a series."""
+"""Relative change of volume in one step [-] up to which the series is used; it is cheaper than the power."""
 
 
 @ti.func
 def isochoric(growth):
-    """(1 + growth)^(-2/3) - 1: to third order in a small growth, and exactly where that would turn negative."""
+    """Return (1 + growth)^(-2/3) - 1: its series to third order up to `SMALL_GROWTH`, the power itself beyond."""
     result = -growth * (2.0 / 3.0 - growth * (5.0 / 9.0 - growth * (40.0 / 81.0)))
     if ti.abs(growth) > SMALL_GROWTH:
         result = ti.pow(1.0 + growth, -2.0 / 3.0) - 1.0
@@ -38,25 +38,30 @@ def isochoric(growth):
 
 
 @ti.func
-def deform(B, A, growth):
-    """Trial strain after the displacement gradient A = dt L, which changes the volume by the share `growth`.
+def deform(b_minus_I, H, growth):
+    """Return b - I after a step without yielding, b <- det(I + H)^(-2/3) (I + H) b (I + H)^T.
 
-    The isotropic part of I + B carries no stress; the factor det(I + A)^(-2/3) keeps it near one.
+    The isotropic part of b carries no stress; the factor, by which b is isochoric, keeps that part near one.
+
+    Args:
+        b_minus_I: isochoric left Cauchy-Green tensor before the step, minus I, six components [-].
+        H: displacement gradient dt L of the step [-].
+        growth: det(I + H) - 1 [-].
     """
     excess = isochoric(growth)
-    C = unpack(B)
-    M = A + A @ C
-    increment = M + M.transpose() + M @ A.transpose()
-    return pack((1.0 + excess) * (C + increment) + excess * identity())
+    strain = unpack(b_minus_I)
+    M = H + H @ strain
+    increment = M + M.transpose() + M @ H.transpose()
+    return pack((1.0 + excess) * (strain + increment) + excess * identity())
 
 
 @ti.data_oriented
 class Hencky:
-    """Deviatoric stress linear in the logarithmic strain, limited by strength.
+    """Hencky's law: deviatoric stress linear in the logarithmic strain, limited by strength.
 
     Args:
         particles: state of the particles.
-        strength: radial return.
+        strength: largest sqrt(J2).
         materials: one per body.
     """
 
@@ -65,39 +70,39 @@ class Hencky:
         self.table = per_body(modulus=[material.shear_modulus for material in materials])
 
     @ti.func
-    def stress(self, p, A, growth, J, P, E, D, body):
-        """Deviatoric Kirchhoff stress [Pa] of particle p after the displacement gradient A.
+    def stress(self, p, H, growth, J, P, E, D, body):
+        """Return 2 G dev(ln V) [Pa], scaled back to sqrt(J2) = Y where it is beyond, and store its strain.
 
-        What remains elastic after yielding is kept; matter that bears no shear stress keeps no strain.
+        Where Y = 0 the stored strain is zero.
         """
         G, Y = self.modulus(body), self.strength.limit(p, P, E, D, body)
         strain, remaining = mat3(0.0), vec6(0.0)
         if Y > 0.0:
-            remaining = deform(self.b_minus_I[p], A, growth)
+            remaining = deform(self.b_minus_I[p], H, growth)
             strain = deviator(half_log(unpack(remaining)))
-            share = return_factor(2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain)), Y)
-            if share < 1.0:
-                strain *= share
+            factor = return_factor(2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain)), Y)
+            if factor < 1.0:
+                strain *= factor
                 remaining = pack(exp_minus_identity(2.0 * strain))
         self.b_minus_I[p] = remaining
         return 2.0 * G * strain
 
     @ti.func
     def modulus(self, body):
-        """Shear modulus [Pa]."""
+        """Return the material's shear modulus [Pa]."""
         return self.table[body].modulus
 
 
 @ti.data_oriented
 class Fluid:
-    """Matter without shear stress."""
+    """No shear stress."""
 
     @ti.func
-    def stress(self, p, A, growth, J, P, E, D, body):
-        """No stress."""
+    def stress(self, p, H, growth, J, P, E, D, body):
+        """Return zero."""
         return mat3(0.0)
 
     @ti.func
     def modulus(self, body):
-        """No resistance."""
+        """Return zero."""
         return ti.cast(0.0, Real)

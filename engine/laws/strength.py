@@ -12,15 +12,15 @@ from engine.scene.material import Material
 
 @ti.data_oriented
 class Strength:
-    """Largest shear stress of intact, damaged and partly damaged rock.
+    """Largest sqrt(J2) of intact, damaged and partly damaged rock.
 
     Args:
         materials: one per body.
     """
 
     def __init__(self, materials: Sequence[Material]) -> None:
-        constants = ("cohesion", "intact_friction", "strength_limit", "melt_energy", "damaged_friction")
-        self.table = per_body(**{name: [getattr(material, name) for material in materials] for name in constants})
+        constants = ("cohesion", "intact_friction", "strength_limit", "melt_energy", "friction")
+        self.table = per_body(**{name: [material.known(name) for material in materials] for name in constants})
 
     @ti.func
     def limit(self, p, P, E, D, body):
@@ -30,13 +30,13 @@ class Strength:
         friction, rise = m.intact_friction * confining, m.strength_limit - m.cohesion
         intact = m.cohesion + friction * rise / (rise + friction)
         intact *= ti.min(ti.max(1.0 - E / m.melt_energy, 0.0), 1.0)
-        damaged = ti.min(m.damaged_friction * confining, intact)
+        damaged = ti.min(m.friction * confining, intact)
         return (1.0 - D) * intact + D * damaged
 
 
 @ti.data_oriented
 class Unlimited:
-    """A solid that never yields."""
+    """Elasticity without yielding."""
 
     @ti.func
     def limit(self, p, P, E, D, body):
@@ -46,8 +46,13 @@ class Unlimited:
 
 @ti.func
 def return_factor(root_J2, Y):
-    """Share of the deviatoric strain that stays elastic: 1 up to the limit Y of sqrt(J2), their ratio beyond it."""
-    share = ti.cast(1.0, Real)
+    """Return the factor on the deviatoric strain of the radial return: 1 up to sqrt(J2) = Y, Y / sqrt(J2) beyond.
+
+    Args:
+        root_J2: sqrt(J2) of the trial stress [Pa].
+        Y: largest sqrt(J2) [Pa].
+    """
+    factor = ti.cast(1.0, Real)
     if root_J2 > Y:
-        share = Y / root_J2
-    return share
+        factor = Y / root_J2
+    return factor

@@ -1,41 +1,24 @@
-"""Tillotson equation of state with all its branches (engine/physics.md, section 2; Benz & Asphaug 1999)."""
-
-from collections.abc import Sequence
+"""Tillotson's equation of state with all branches (engine/physics.md, section 2; Benz & Asphaug 1999)."""
 
 import taichi as ti
 
-from engine.device.backend import Real
-from engine.scene.material import Material
+from engine.laws.equation_of_state import MaterialConstants
 
 SOUND_SPEED_FLOOR = 0.1
-"""Least sound speed, in units of sqrt(A/rho0): expanded states would otherwise stop having one."""
+"""Least speed of sound in units of sqrt(A/rho0) [-]: in some expanded states the square is negative."""
 
 
 @ti.data_oriented
-class Tillotson:
-    """Pressure and sound speed from compression and energy.
+class Tillotson(MaterialConstants):
+    """Tillotson's law of compression and energy.
 
     Args:
         materials: one per body, all of Tillotson's form.
     """
 
-    def __init__(self, materials: Sequence[Material]) -> None:
-        constants = ("rho0", "a", "b", "A", "B", "E0", "E_iv", "E_cv", "alpha", "beta")
-        self.table = ti.types.struct(**dict.fromkeys(constants, Real)).field(shape=len(materials))
-        for i, material in enumerate(materials):
-            for name, value in {"rho0": material.rho0, **material.eos.constants()}.items():
-                getattr(self.table, name)[i] = value
-
     @ti.func
     def evaluate(self, p, mu, energy, body):
-        """Pressure [Pa] and squared sound speed [m^2/s^2].
-
-        Args:
-            p: index of the particle.
-            mu: rho/rho0 - 1 [-].
-            energy: specific internal energy [J/kg]; below zero there is no heat left that could press.
-            body: index of the body, which fixes the material.
-        """
+        """Return P [Pa] and dP/drho + (P/rho^2) dP/dE [m^2/s^2]; E < 0 counts as 0 (engine/physics.md, section 2)."""
         m, E = self.table[body], ti.max(energy, 0.0)
         cold_P, cold_eta, cold_e = condensed(m, mu, E)
         P, P_eta, P_e = cold_P, cold_eta, cold_e
@@ -54,11 +37,11 @@ class Tillotson:
 
 @ti.data_oriented
 class ColdTillotson(Tillotson):
-    """Pressure on the cold curve, from compression alone; arguments as for `Tillotson`."""
+    """Tillotson's law at E = 0; arguments as for `Tillotson`."""
 
     @ti.func
     def evaluate(self, p, mu, E, body):
-        """Pressure [Pa] and squared sound speed [m^2/s^2]; there is no energy E."""
+        """Return A mu + B mu^2 [Pa] and its derivative by density [m^2/s^2]."""
         m = self.table[body]
         floor = SOUND_SPEED_FLOOR * SOUND_SPEED_FLOOR * m.A
         return (m.A + m.B * mu) * mu, ti.max(m.A + 2.0 * m.B * mu, floor) / m.rho0
@@ -66,7 +49,13 @@ class ColdTillotson(Tillotson):
 
 @ti.func
 def condensed(m, mu, E):
-    """Pressure of compressed or cold matter and its derivatives by eta and by e = rho0 E, all in Pa."""
+    """Return P [Pa] of compressed or cold matter, dP/d eta [Pa] and dP/de [-], with e = rho0 E.
+
+    Args:
+        m: constants of the material.
+        mu: rho/rho0 - 1 [-].
+        E: specific internal energy [J/kg], not negative.
+    """
     eta, e = 1.0 + mu, m.rho0 * E
     omega = inverse_omega(m, eta, E)
     P = (m.a + m.b * omega) * eta * e + (m.A + m.B * mu) * mu
@@ -77,7 +66,7 @@ def condensed(m, mu, E):
 
 @ti.func
 def expanded(m, mu, E):
-    """Pressure of expanded hot matter and its derivatives by eta and by e = rho0 E, all in Pa."""
+    """Return the same of expanded, vaporised matter; arguments as for `condensed`."""
     eta, e = 1.0 + mu, m.rho0 * E
     omega = inverse_omega(m, eta, E)
     J = 1.0 / eta
@@ -94,6 +83,6 @@ def expanded(m, mu, E):
 
 @ti.func
 def inverse_omega(m, eta, E):
-    """1 / (E / (E0 eta^2) + 1)."""
+    """Return 1 / (E / (E0 eta^2) + 1) [-]; eta is rho/rho0, other arguments as for `condensed`."""
     cold = m.E0 * eta * eta
     return cold / (cold + E)

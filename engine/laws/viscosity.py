@@ -9,10 +9,10 @@ from engine.scene.scene import ViscosityCoefficients
 
 @ti.data_oriented
 class Viscosity:
-    """Viscous stress of one particle.
+    """Newtonian viscosity, and shock viscosity in compression.
 
     Args:
-        coefficients: the scene's viscosity.
+        coefficients: of the scene.
         dx: grid spacing [m].
     """
 
@@ -36,7 +36,7 @@ class Viscosity:
 
 @ti.data_oriented
 class Inviscid:
-    """Matter without viscosity."""
+    """No viscosity."""
 
     @ti.func
     def stress(self, p, d, rho, c):

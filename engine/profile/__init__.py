@@ -1,1 +1,1 @@
-"""What a scene costs: its parts, their memory and their time."""
+"""Profile of a scene: its parts, their memory and their time."""

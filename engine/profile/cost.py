@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import ParamSpec, TypeVar
 
 from engine.device import backend
 from engine.job.checkpoint import load_checkpoint
@@ -14,14 +14,17 @@ from engine.profile.parts import parts_of
 from engine.scene.scene import Scene, scene_at
 from engine.simulation.simulation import Simulation
 
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
 
 @dataclass
 class Cost:
     """Time of a repeated task.
 
     Attributes:
-        calls: how often it ran.
-        wall, cpu: wall time, and CPU time of all threads [s].
+        calls: number of runs.
+        wall, cpu: wall time and CPU time of all threads [s].
     """
 
     calls: int = 0
@@ -41,14 +44,14 @@ class Cost:
 
 @dataclass
 class Measurement:
-    """Steps of a scene and their cost.
+    """Cost of some steps of a scene.
 
     Attributes:
-        simulation: in the state after them.
-        begun: simulated time [s] before the first.
-        steps: how many were measured.
-        whole: cost of all of them, kernels and host.
-        kernels: cost of every kernel that ran, by part and name.
+        simulation: in the state after the steps.
+        begun: simulated time [s] before the first step.
+        steps: number of steps.
+        whole: cost of all steps, kernels and host.
+        kernels: cost of every kernel, by part and name.
     """
 
     simulation: Simulation
@@ -63,8 +66,9 @@ def measure(source: Path, steps: int, arch: str, threads: int) -> Measurement:
 
     Args:
         source: a scene file or a job directory.
-        steps: how many steps to measure, after one that compiles what it needs.
-        arch, threads: device and CPU threads.
+        steps: number of steps to measure, after one that compiles.
+        arch: `cpu` or `cuda`.
+        threads: CPU threads.
 
     Raises:
         SceneError: the scene cannot be read.
@@ -104,9 +108,9 @@ def _watch(result: Measurement) -> None:
             setattr(part.content, name, _timed(getattr(part.content, name), cost))
 
 
-def _timed(kernel: Callable[..., Any], cost: Cost) -> Callable[..., Any]:
-    def run(*arguments: Any) -> Any:
+def _timed(kernel: Callable[Arguments, Result], cost: Cost) -> Callable[Arguments, Result]:
+    def run(*arguments: Arguments.args, **named: Arguments.kwargs) -> Result:
         with cost.lap():
-            return kernel(*arguments)
+            return kernel(*arguments, **named)
 
     return run

@@ -4,12 +4,12 @@ import inspect
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import prod
-from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
 from engine.device.taichi_internals import Field, StructField, is_kernel, to_numpy_type
+from engine.simulation.simulation import Simulation
 
 
 @dataclass(frozen=True)
@@ -24,18 +24,18 @@ class Part:
     """
 
     name: str
-    content: Any
-    fields: dict[str, Any]
+    content: object
+    fields: dict[str, Field]
     kernels: tuple[str, ...]
 
     @property
     def left_out(self) -> bool:
-        """Whether it has neither fields nor kernels: the null part of physics that the scene leaves out."""
+        """Whether it has neither fields nor kernels of its own: physics left out, or a combination of other parts."""
         return not (self.fields or self.kernels)
 
 
-def parts_of(simulation: Any) -> list[Part]:
-    """Return all parts, outer ones first; a field shared by several belongs to the innermost."""
+def parts_of(simulation: Simulation) -> list[Part]:
+    """Return all parts of a simulation, outer ones first; a field shared by several belongs to the innermost."""
     parts: list[Part] = []
     claimed: set[int] = set()
     for name, content in reversed(list(_walk(simulation))):
@@ -45,17 +45,17 @@ def parts_of(simulation: Any) -> list[Part]:
     return parts[::-1]
 
 
-def own_fields(content: Any) -> dict[str, Any]:
+def own_fields(content: object) -> dict[str, Field]:
     """Return the fields among the attributes of an object, by name."""
     return {name: value for name, value in vars(content).items() if isinstance(value, Field)}
 
 
-def allocated_bytes(field: Any) -> int:
+def allocated_bytes(field: Field) -> int:
     """Memory of a field [bytes]."""
     return int(prod(field.shape)) * entry_bytes(field)
 
 
-def entry_bytes(field: Any) -> int:
+def entry_bytes(field: Field) -> int:
     """Memory of one entry of a field [bytes]."""
     if isinstance(field, StructField):
         return sum(entry_bytes(field.get_member_field(key)) for key in field.keys)
@@ -63,9 +63,10 @@ def entry_bytes(field: Any) -> int:
     return int(components * np.dtype(to_numpy_type(field.dtype)).itemsize)
 
 
-def _walk(simulation: Any) -> Iterator[tuple[str, Any]]:
+def _walk(simulation: Simulation) -> Iterator[tuple[str, object]]:
     """Names and parts, breadth first, each part once."""
-    seen, queue = {id(simulation)}, [("simulation", simulation)]
+    seen: set[int] = {id(simulation)}
+    queue: list[tuple[str, object]] = [("simulation", simulation)]
     while queue:
         name, content = queue.pop(0)
         yield name, content
@@ -74,10 +75,10 @@ def _walk(simulation: Any) -> Iterator[tuple[str, Any]]:
         queue += inner
 
 
-def _is_part(value: Any) -> bool:
+def _is_part(value: object) -> bool:
     return type(value).__module__.partition(".")[0] == "engine" and not isinstance(value, BaseModel)
 
 
-def _kernels(content: Any) -> tuple[str, ...]:
+def _kernels(content: object) -> tuple[str, ...]:
     kind = type(content)
     return tuple(name for name in dir(kind) if is_kernel(inspect.getattr_static(kind, name)))

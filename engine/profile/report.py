@@ -11,7 +11,7 @@ from engine.profile.parts import Part, allocated_bytes, parts_of
 
 
 def report(result: Measurement) -> RenderableType:
-    """Return the parts of a measured scene as a table, and below it what the scene leaves out."""
+    """Return a table of the parts of a measured scene, with memory [bytes] and time [ms per step]."""
     simulation, physics = result.simulation, result.simulation.scene.physics
     heading = (
         f"{simulation.particles.count:,} particles in {int(simulation.stencil.block_count[None]):,} blocks; "
@@ -72,7 +72,7 @@ def _per_step(result: Measurement, seconds: float) -> float:
 
 
 def size(count: float) -> str:
-    """Format bytes in the unit that gives a number below 1024."""
+    """Return a number of bytes as text, in the unit that gives a number below 1024."""
     for unit in ("B", "KiB", "MiB"):
         if count < 1024.0:
             return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"

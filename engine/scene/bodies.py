@@ -5,25 +5,26 @@ from typing import Annotated, Self
 
 from pydantic import Field
 
-from engine.scene.fields import Frozen, Number, Positive, Vector, Whole
-from engine.scene.material import Material
+from engine.scene.fields import Frozen, Number, Positive, Vector, Whole, key
+from engine.scene.material import Material, named
 
 PositiveVector = tuple[Positive, Positive, Positive]
 MOST_PARTICLES = 2**30
 """Particles that 32-bit indices can count, in fields whose sizes are powers of two."""
 
 Count = Annotated[Whole, Field(ge=1, le=MOST_PARTICLES)]
+Damage = Annotated[Number, Field(ge=0.0, le=1.0)]
 
 
 class Body(Frozen):
     """What bodies of every shape have in common."""
 
-    name: str = "body"
-    position: Vector = (0.0, 0.0, 0.0)
-    velocity: Vector = (0.0, 0.0, 0.0)
-    spin: Vector = (0.0, 0.0, 0.0)
-    material: Material = Material()
-    damage: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.0
+    name: Annotated[str, key("name of the body")] = "body"
+    position: Annotated[Vector, key("position of the centre", "m")] = (0.0, 0.0, 0.0)
+    velocity: Annotated[Vector, key("velocity of the centre", "m s-1")] = (0.0, 0.0, 0.0)
+    spin: Annotated[Vector, key("angular velocity about the centre", "rad s-1")] = (0.0, 0.0, 0.0)
+    material: Annotated[Material, key("material: a name, or constants")] = named("basalt")
+    damage: Annotated[Damage, key("damage at the start", "1")] = 0.0
 
     @property
     @abstractmethod
@@ -57,14 +58,13 @@ class Body(Frozen):
 
 
 class Sphere(Body):
-    """A homogeneous sphere of `particles` equal particles.
+    """A homogeneous sphere of `particles` equal particles."""
 
-    hydrostatic: start under the pressure that its own gravity keeps; not given, where the scene has self-gravity.
-    """
-
-    radius: Positive
-    particles: Count
-    hydrostatic: bool | None = None
+    radius: Annotated[Positive, key("radius", "m")]
+    particles: Annotated[Count, key("number of particles", "1")]
+    hydrostatic: Annotated[
+        bool | None, key("whether it starts under the pressure of its own gravity; by default where there is gravity")
+    ] = None
 
     def balanced(self, gravity: bool) -> Self:
         """The same body, hydrostatic under its own gravity unless it says otherwise."""
@@ -95,8 +95,8 @@ class Sphere(Body):
 class Box(Body):
     """A homogeneous cuboid around `position`: a rectangular lattice of `lattice` particles per edge."""
 
-    size: PositiveVector
-    lattice: tuple[Count, Count, Count]
+    size: Annotated[PositiveVector, key("length of the edges", "m")]
+    lattice: Annotated[tuple[Count, Count, Count], key("particles along each edge", "1")]
 
     @property
     def volume(self) -> float:

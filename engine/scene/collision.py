@@ -1,70 +1,93 @@
 """The builder of collision scenes: two spheres meeting at a given speed and angle (engine/physics.md, section 8)."""
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
+from engine.errors import SceneError
 from engine.scene.bodies import MOST_PARTICLES, Count, Sphere
-from engine.scene.fields import Finite, Frozen, NonNegative, Number, OrOff, Positive
+from engine.scene.collision_bodies import MaterialName, Projectile, Target, rounded
+from engine.scene.fields import Finite, Frozen, Number, OrOff, Positive, key
 from engine.scene.input_errors import suggestion
-from engine.scene.material import PARAMETER_SETS, FractureRules, Material
+from engine.scene.material import FractureRules, Material
+from engine.scene.materials import CONSTANTS
+from engine.scene.parameter_sets import DEFAULT, PARAMETER_SETS
 from engine.scene.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, ViscosityCoefficients
+from engine.scene.tables import overlay
 from engine.scene.two_body import Approach, approach
 
 
 class Collision(Frozen):
-    """Two spheres without spin; t = 0 is the contact of point masses at separation R1 + R2.
+    """Two spheres; t = 0 is the contact of point masses at separation R1 + R2.
 
-    velocity: relative speed at contact [m/s].
-    angle: impact angle [deg], 0 is head-on.
-    radius, projectile_radius: radii of target and projectile [m]; equal unless the second is given.
-    particles: particles in the target; the projectile has the same mass per particle.
-    end_time: simulated time after contact [s].
-    start_separation: distance of the centres at the start, in contact distances R1 + R2.
-    parameter_set: constants and rules of friction and fracture, `sugiura2018` or `talk`.
-    friction: friction coefficient of damaged rock [-], when other than the parameter set's.
-    fracture: rules of fracture that replace those of the parameter set; `false` leaves fracture out.
-    sound_speed: factor on the speed of sound, see engine.scene.scene.Physics.
+    Keys that are not given are those of the parameter set. `materials` has the constants of materials by name, those
+    of a shipped one laid over it.
     """
 
-    velocity: Positive
-    angle: Annotated[Number, Field(ge=0.0, le=90.0)]
-    radius: Positive = 50.0e3
-    projectile_radius: Positive | None = None
-    particles: Count = 20000
-    end_time: Finite = 15200.0
-    start_separation: Annotated[Number, Field(gt=1.0, allow_inf_nan=False)] = 2.0
-    seed: Seed = 1
-    parameter_set: str = "sugiura2018"
-    material: Material = Material()
-    friction: NonNegative | None = None
-    fracture: FractureRules | Literal[False] | None = None
-    gravity: OrOff[Gravity] = Gravity()
-    viscosity: OrOff[ViscosityCoefficients] = None
-    sound_speed: Fraction = 1.0
-    numerics: Numerics = Numerics()
-    output: Output = Output()
+    renamed_keys: ClassVar[dict[str, str]] = {
+        "radius": "target.radius",
+        "projectile_radius": "projectile.radius",
+        "friction": "materials.basalt.friction",
+        "material": "materials.basalt",
+    }
 
-    @field_validator("fracture", mode="before")
-    @classmethod
-    def _rules_not_given_are_those_of_the_set(cls, given: Any, info: ValidationInfo) -> Any:
-        rules = PARAMETER_SETS.get(str(info.data.get("parameter_set")))
-        changes = given.model_dump(exclude_unset=True) if isinstance(given, FractureRules) else given
-        return rules.fracture.model_dump() | changes if rules and isinstance(changes, dict) else given
+    velocity: Annotated[Positive, key("relative speed at point-mass contact", "m s-1")]
+    angle: Annotated[Number, Field(ge=0.0, le=90.0), key("impact angle, 0 is head-on", "degree")]
+    target: Annotated[Target, key("the first body")] = Target()
+    projectile: Annotated[Projectile, key("the second body")] = Projectile()
+    materials: Annotated[dict[MaterialName, Material], key("constants of materials by name")] = Field(
+        default_factory=dict, validate_default=True
+    )
+    particles: Annotated[Count, key("particles in the target; those of the projectile have the same spacing", "1")] = (
+        20000
+    )
+    end_time: Annotated[Finite, key("simulated time after point-mass contact", "s")] = 15200.0
+    start_separation: Annotated[
+        Number,
+        Field(gt=1.0, allow_inf_nan=False),
+        key("distance of the centres at the start, in contact distances R1 + R2", "1"),
+    ] = 2.0
+    seed: Annotated[Seed, key("seed of the particles and flaws", "1")] = 1
+    parameter_set: Annotated[str, key("published set-up whose keys are the defaults")] = DEFAULT
+    fracture: Annotated[OrOff[FractureRules], key("rules of fracture")] = FractureRules()
+    gravity: Annotated[OrOff[Gravity], key("self-gravity")] = Gravity()
+    viscosity: Annotated[OrOff[ViscosityCoefficients], key("viscosity")] = None
+    sound_speed: Annotated[Fraction, key("factor on the speed of sound, below 1 a late-stage approximation", "1")] = 1.0
+    numerics: Annotated[Numerics, key("resolution in space and time")] = Numerics()
+    output: Annotated[Output, key("what is written")] = Output()
 
-    @field_validator("material")
+    @model_validator(mode="before")
     @classmethod
-    def _has_no_friction_of_its_own(cls, material: Material) -> Material:
-        if material.damaged_friction != Material().damaged_friction:
-            raise ValueError("'damaged_friction' is the parameter set's here; give 'friction' of the collision instead")
-        return material
+    def _lies_over_its_parameter_set(cls, given: Any) -> Any:
+        if not isinstance(given, dict):
+            return given
+        return overlay(PARAMETER_SETS.get(str(given.get("parameter_set", DEFAULT)), {}), given)
+
+    @field_validator("materials", mode="before")
+    @classmethod
+    def _have_their_names(cls, given: Any, info: ValidationInfo) -> Any:
+        if not isinstance(given, dict):
+            return given
+        bodies = [info.data[body] for body in ("target", "projectile") if body in info.data]
+        used: dict[str, Any] = {body.material: {} for body in bodies if body.material in CONSTANTS}
+        tables = used | given
+        return {name: {"name": name} | table if isinstance(table, dict) else table for name, table in tables.items()}
 
     @model_validator(mode="after")
     def _parameter_set_is_known(self) -> Self:
         if self.parameter_set not in PARAMETER_SETS:
             hint = suggestion(self.parameter_set, list(PARAMETER_SETS), "parameter sets")
             raise ValueError(f"unknown parameter_set '{self.parameter_set}'{hint}")
+        return self
+
+    @model_validator(mode="after")
+    def _materials_are_known(self) -> Self:
+        known = list(self.materials | CONSTANTS)
+        for body in ("target", "projectile"):
+            name = getattr(self, body).material
+            if name is not None and name not in self.materials:
+                raise ValueError(f"'{body}.material': unknown material '{name}'{suggestion(name, known, 'materials')}")
         return self
 
     @model_validator(mode="after")
@@ -75,28 +98,42 @@ class Collision(Frozen):
 
     @model_validator(mode="after")
     def _projectile_can_be_counted(self) -> Self:
-        largest = self.radius * (MOST_PARTICLES / self.particles) ** (1.0 / 3.0)
-        if self.projectile_radius and self.projectile_radius > largest:
+        largest = self.target.radius * (MOST_PARTICLES / self.particles) ** (1.0 / 3.0)
+        if self.projectile.radius and self.projectile.radius > largest:
             raise ValueError(
-                f"'projectile_radius' {self.projectile_radius} m takes more than {MOST_PARTICLES} particles of the "
+                f"'projectile.radius' {self.projectile.radius} m takes more than {MOST_PARTICLES} particles of the "
                 f"target's size: give at most {largest:.3g} m, or fewer 'particles'"
             )
         return self
 
     def bodies_at_contact(self) -> tuple[Sphere, Sphere]:
-        """Target and projectile, both still at the origin."""
-        chosen = PARAMETER_SETS[self.parameter_set]
-        friction = chosen.damaged_friction if self.friction is None else self.friction
-        material = self.material.model_copy(update={"damaged_friction": friction})
-        small = self.radius if self.projectile_radius is None else self.projectile_radius
-        share = max(1, round(self.particles * (small / self.radius) ** 3))
-        return (
-            Sphere(name="target", radius=self.radius, particles=self.particles, material=material),
-            Sphere(name="projectile", radius=small, particles=share, material=material),
+        """Return target and projectile, both still at the origin.
+
+        Raises:
+            SceneError: a constant is unknown that strength or fracture needs.
+        """
+        radius, count = self.target.radius, self.particles
+        small = radius if self.projectile.radius is None else self.projectile.radius
+        fewer = max(1, round(count * (small / radius) ** 3))
+        return self._body("target", radius, count), self._body("projectile", small, fewer)
+
+    def _body(self, name: str, radius: float, particles: int) -> Sphere:
+        given: Target | Projectile = getattr(self, name)
+        material = self._complete(given.material or self.target.material)
+        return Sphere(
+            name=name, radius=radius, particles=particles, material=material, damage=given.damage, spin=given.spin
         )
 
+    def _complete(self, name: str) -> Material:
+        """The material of this name, which must have all constants that the collision needs."""
+        material = self.materials[name]
+        for part, keys in material.lacks(("strength", *(["fracture"] if self.fracture else []))).items():
+            way_out = "give them" if part == "strength" else "give them, or set fracture = false"
+            raise SceneError(f"'materials.{name}' lacks {', '.join(keys)}, which {part} needs: {way_out}")
+        return material
+
     def approach(self) -> Approach:
-        """Where the projectile starts relative to the target, and how long it takes to contact."""
+        """Return where the projectile starts relative to the target, and how long it takes to contact."""
         target, projectile = self.bodies_at_contact()
         contact, angle = target.radius + projectile.radius, np.deg2rad(self.angle)
         mass = target.mass + projectile.mass if self.gravity else 0.0
@@ -105,10 +142,13 @@ class Collision(Frozen):
         return approach(position, velocity, mass, self.start_separation * contact)
 
     def scene(self) -> Scene:
-        """The scene at the start of the approach, in the frame of the centre of mass."""
+        """Return the scene at the start of the approach, in the frame of the centre of mass.
+
+        Raises:
+            SceneError: a constant is unknown that strength or fracture needs.
+        """
         start = self.approach()
         target, projectile = self.bodies_at_contact()
-        rules = PARAMETER_SETS[self.parameter_set].fracture if self.fracture is None else self.fracture
         fraction = projectile.mass / (target.mass + projectile.mass)
         return Scene(
             bodies=(_moved(target, start, -fraction), _moved(projectile, start, 1.0 - fraction)),
@@ -116,7 +156,7 @@ class Collision(Frozen):
             end_time=self.end_time,
             seed=self.seed,
             physics=Physics(
-                fracture=rules or None,
+                fracture=self.fracture,
                 gravity=self.gravity,
                 viscosity=self.viscosity,
                 sound_speed=self.sound_speed,
@@ -126,13 +166,8 @@ class Collision(Frozen):
         )
 
 
-def _moved(body: Sphere, start: Approach, share: float) -> Sphere:
-    """The body at its share of the relative position and velocity."""
-    position = tuple(rounded(share * value) for value in start.position)
-    velocity = tuple(rounded(share * value) for value in start.velocity)
+def _moved(body: Sphere, start: Approach, fraction: float) -> Sphere:
+    """The body at its fraction of the relative position and velocity."""
+    position = tuple(rounded(fraction * value) for value in start.position)
+    velocity = tuple(rounded(fraction * value) for value in start.velocity)
     return body.model_copy(update={"position": position, "velocity": velocity})
-
-
-def rounded(value: float) -> float:
-    """Ten digits of a number: the same collision is then the same scene, and the same job, on every machine."""
-    return float(f"{value:.9e}")

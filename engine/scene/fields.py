@@ -35,6 +35,16 @@ OrOff = Annotated[Kind | None, BeforeValidator(lambda value: None if value is Fa
 """A part that `false` leaves out."""
 
 
+def key(meaning: str, unit: str = "") -> Any:
+    """Describe a key of an input model.
+
+    Args:
+        meaning: what it is, as the long name in data sets.
+        unit: as CF writes it, `1` for a pure number; empty for texts, switches and tables.
+    """
+    return Field(description=meaning, json_schema_extra={"unit": unit})
+
+
 class Frozen(BaseModel):
     """Base of every input model: immutable, and unknown keys are errors."""
 

@@ -8,6 +8,8 @@ from typing import Any, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
+from engine.scene.keys import ANY_NAME, current_key, has_names, models_in
+
 Location = tuple[int | str, ...]
 
 PLAIN = {
@@ -63,6 +65,8 @@ def _place(table: Any, issue: Any) -> Location:
 def _line(model: type[BaseModel], place: Location, issues: list[Any]) -> str:
     key, first = ".".join(str(part) for part in place), issues[0]
     if first["type"] == "extra_forbidden":
+        if renamed := current_key(model, key):
+            return f"'{key}' is now '{renamed}'"
         nearby = _model_at(model, first["loc"][:-1])
         return f"unknown key '{key}'{suggestion(str(place[-1]), list(nearby.model_fields), below=_keys_below(nearby))}"
     if first["type"] == "missing":
@@ -82,8 +86,13 @@ def _model_at(model: type[BaseModel], location: Location) -> type[BaseModel]:
     choices = [model]
     for part in location:
         inside = [inner for choice in choices for inner in _models_of(choice, part)]
-        choices = [choice for choice in choices if choice.__name__ == part] or inside or choices
+        choices = [choice for choice in choices if _tag(choice) == part] or inside or choices
     return choices[0]
+
+
+def _tag(model: type[BaseModel]) -> str:
+    """What stands for a model in the location of an issue where several were possible: its form, or its name."""
+    return str(model.model_fields["form"].default) if "form" in model.model_fields else model.__name__
 
 
 def _models_of(model: type[BaseModel], name: int | str) -> list[type[BaseModel]]:
@@ -92,17 +101,10 @@ def _models_of(model: type[BaseModel], name: int | str) -> list[type[BaseModel]]
     return models_in(field.annotation) if field else []
 
 
-def models_in(annotation: Any) -> list[type[BaseModel]]:
-    """The input models inside `Model`, `Model | None`, or `tuple[Model, ...]`."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [model for argument in getattr(annotation, "__args__", ()) for model in models_in(argument)]
-
-
 def _keys_below(model: type[BaseModel]) -> list[str]:
     """Dotted keys of the tables that `model` holds, at any depth."""
     return [
-        f"{name}.{key}"
+        f"{name}.{ANY_NAME}.{key}" if has_names(field) else f"{name}.{key}"
         for name, field in model.model_fields.items()
         for table in _tables_in(field)
         for key in (*table.model_fields, *_keys_below(table))

@@ -1,55 +1,98 @@
-"""Material constants and the two published parameter sets (engine/physics.md, sections 2-5)."""
+"""Constants of a material, and rules of its fracture (engine/physics.md, sections 2-5)."""
 
-from typing import Annotated, Any, Literal, Self
+from collections.abc import Iterable
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from engine.scene.fields import Frozen, NonNegative, Number, Positive
+from engine.scene.fields import Frozen, NonNegative, Number, Positive, key
 from engine.scene.input_errors import suggestion
+from engine.scene.materials import CONSTANTS
 from engine.scene.murnaghan import MurnaghanParameters
+from engine.scene.tables import overlay
 from engine.scene.tillotson import TillotsonParameters
 
 
-def _form(given: Any) -> str | None:
-    """Name of the model that plain keys, or a model, describe; Tillotson's unless they name a form."""
-    form = given.get("form", "tillotson") if isinstance(given, dict) else getattr(given, "form", "tillotson")
-    return f"{form}".capitalize() + "Parameters"
+def _form(given: Any) -> str:
+    """Form of an equation of state given as plain keys or as a model; Tillotson's unless it is named."""
+    return str(given.get("form", "tillotson") if isinstance(given, dict) else getattr(given, "form", "tillotson"))
 
 
 AnyEquationOfState = Annotated[
-    Annotated[TillotsonParameters, Tag(TillotsonParameters.__name__)]
-    | Annotated[MurnaghanParameters, Tag(MurnaghanParameters.__name__)],
+    Annotated[TillotsonParameters, Tag("tillotson")] | Annotated[MurnaghanParameters, Tag("murnaghan")],
     Discriminator(_form, "form", "'form' must be 'tillotson' or 'murnaghan'"),
 ]
 """Constants of an equation of state; their key `form` chooses which, Tillotson's if it is not given."""
 
+NEEDED = {
+    "strength": ("cohesion", "intact_friction", "strength_limit", "melt_energy", "friction"),
+    "fracture": ("weibull_k", "weibull_m"),
+}
+"""Constants without which a part of physics cannot be, by the part's key."""
+
 
 class Material(Frozen):
-    """One solid [SI units]; the defaults are basalt with the constants of Sugiura et al. 2018."""
+    """Constants of one solid; those of parts that a scene leaves out may be unknown.
 
-    rho0: Positive = 2700.0
-    eos: AnyEquationOfState = TillotsonParameters()
-    shear_modulus: Positive = 2.27e10
-    cohesion: NonNegative = 1.0e7
-    intact_friction: NonNegative = 1.0
-    strength_limit: Positive = 3.5e9
-    melt_energy: Positive = 3.4e6
-    damaged_friction: NonNegative = 0.839
-    weibull_k: Positive = 4.0e35
-    weibull_m: Annotated[Number, Field(ge=1.0, allow_inf_nan=False)] = 9.0
+    Given as the name of a shipped material (engine.scene.materials), as a table with such a `name` whose keys are laid
+    over it, or as a complete table of its own.
+    """
+
+    renamed_keys: ClassVar[dict[str, str]] = {"damaged_friction": "friction", "tillotson": "eos"}
+
+    name: Annotated[str | None, key("material from whose constants it starts")] = None
+    rho0: Annotated[Positive, key("reference density", "kg m-3")]
+    eos: Annotated[AnyEquationOfState, key("equation of state")]
+    shear_modulus: Annotated[Positive, key("shear modulus G", "Pa")]
+    cohesion: Annotated[NonNegative | None, key("cohesion Y0 of intact rock", "Pa")] = None
+    intact_friction: Annotated[NonNegative | None, key("friction coefficient mu_i of intact rock", "1")] = None
+    strength_limit: Annotated[Positive | None, key("limit Y_M of intact strength under pressure", "Pa")] = None
+    melt_energy: Annotated[Positive | None, key("specific energy u_melt at which strength vanishes", "J kg-1")] = None
+    friction: Annotated[NonNegative | None, key("friction coefficient mu_d of damaged rock", "1")] = None
+    weibull_k: Annotated[Positive | None, key("Weibull coefficient k: flaws per volume, k strain^m", "m-3")] = None
+    weibull_m: Annotated[
+        Annotated[Number, Field(ge=1.0, allow_inf_nan=False)] | None, key("Weibull exponent m of flaws", "1")
+    ] = None
 
     @model_validator(mode="before")
     @classmethod
-    def _names_its_equation_of_state(cls, given: Any) -> Any:
-        if isinstance(given, dict) and "tillotson" in given:
-            raise ValueError(f"unknown key 'tillotson'{suggestion('eos', list(cls.model_fields))}")
-        return given
+    def _starts_from_its_namesake(cls, given: Any) -> Any:
+        table = {"name": given} if isinstance(given, str) else given
+        if not isinstance(table, dict):
+            return table
+        name = table.get("name")
+        if isinstance(name, str) and name in CONSTANTS:
+            return overlay(CONSTANTS[name], table)
+        absent = [key for key, field in cls.model_fields.items() if field.is_required() and key not in table]
+        if absent and not cls.renamed_keys.keys() & table.keys():
+            raise ValueError(_incomplete(name, absent))
+        return table
 
     @model_validator(mode="after")
     def _strengthens_with_pressure(self) -> Self:
-        if self.strength_limit <= self.cohesion:
+        if self.strength_limit is not None and self.cohesion is not None and self.strength_limit <= self.cohesion:
             raise ValueError(f"'strength_limit' {self.strength_limit} Pa must exceed 'cohesion' {self.cohesion} Pa")
         return self
+
+    def lacks(self, parts: Iterable[str]) -> dict[str, list[str]]:
+        """Return the unknown constants that parts of physics need, by part; parts that miss nothing are left out.
+
+        Args:
+            parts: keys of `NEEDED`.
+        """
+        absent = {part: [key for key in NEEDED[part] if getattr(self, key) is None] for part in parts}
+        return {part: keys for part, keys in absent.items() if keys}
+
+    def known(self, constant: str) -> float:
+        """Return a constant that may be unknown.
+
+        Raises:
+            ValueError: it is unknown.
+        """
+        value = getattr(self, constant)
+        if value is None:
+            raise ValueError(f"material {self.name or 'without name'} has no '{constant}'")
+        return float(value)
 
     @property
     def longitudinal_modulus(self) -> float:
@@ -68,40 +111,41 @@ class Material(Frozen):
         return 9.0 * bulk * shear / (3.0 * bulk + shear)
 
     def slowed(self, factor: float) -> Self:
-        """The same solid with elastic moduli that let waves travel at `factor` of their speed; its strength stays."""
+        """Return the same solid with moduli in which waves travel at `factor` [-] of their speed; strength stays."""
         shear = factor**2 * self.shear_modulus
         return self.model_copy(update={"eos": self.eos.softened(factor), "shear_modulus": shear})
+
+
+def named(name: str, **changes: Any) -> Material:
+    """Return a shipped material, with other values for some of its constants.
+
+    Args:
+        name: `basalt` or `ice`.
+        changes: constants by key of `Material`; a table or model for `eos`.
+    """
+    return Material.model_validate({"name": name, **changes})
+
+
+def _incomplete(name: Any, absent: list[str]) -> str:
+    """What to tell of a table that neither is complete nor names a shipped material."""
+    keys = ", ".join(absent)
+    if name is None:
+        return f"a material without 'name' must give {keys}; or name one to start from: {', '.join(CONSTANTS)}"
+    hint = suggestion(str(name), list(CONSTANTS), "materials")
+    return f"unknown material '{name}' (one of your own must give {keys}){hint}"
 
 
 class FractureRules(Frozen):
     """Weibull flaws and Grady-Kipp damage growth (engine/physics.md, section 5).
 
-    flaws: `covered` draws flaws until every particle holds one, `2NlnN` draws that many.
-    strain: modulus that turns the largest tensile stress into the local strain.
-    growth_speed: crack speed in units of the longitudinal sound speed.
-    growth_range: distance R_s a crack runs to break one particle, in particle spacings h.
-    per_flaw: cracks grow from every active flaw at once, so the rate is n_act times one crack's.
-    In both, D never exceeds the share of the particle's flaws that are active.
+    `covered` draws flaws until every particle has one, `2NlnN` draws that many. D never exceeds the fraction of the
+    particle's flaws that are active.
     """
 
-    flaws: Literal["covered", "2NlnN"] = "covered"
-    strain: Literal["longitudinal", "young"] = "longitudinal"
-    growth_speed: Positive = 0.4
-    growth_range: Positive = 3.0
-    per_flaw: bool = True
-
-
-class ParameterSet(Frozen):
-    """Everything in which two published set-ups of the same collision differ."""
-
-    damaged_friction: float
-    fracture: FractureRules
-
-
-PARAMETER_SETS = {
-    "sugiura2018": ParameterSet(damaged_friction=0.839, fracture=FractureRules()),
-    "talk": ParameterSet(
-        damaged_friction=0.945,
-        fracture=FractureRules(flaws="2NlnN", strain="young", growth_speed=0.5, per_flaw=False),
-    ),
-}
+    flaws: Annotated[Literal["covered", "2NlnN"], key("how many flaws a body has")] = "covered"
+    strain: Annotated[
+        Literal["longitudinal", "young"], key("modulus that turns the largest tensile stress into local strain")
+    ] = "longitudinal"
+    growth_speed: Annotated[Positive, key("crack speed in units of the longitudinal sound speed", "1")] = 0.4
+    growth_range: Annotated[Positive, key("distance a crack runs to break a particle, in particle spacings", "1")] = 3.0
+    per_flaw: Annotated[bool, key("whether a crack grows from every active flaw at once, instead of one")] = True

@@ -7,19 +7,15 @@ import numpy as np
 from pydantic import Field
 
 from engine.scene.equation_of_state import AlgebraicEquationOfState, Array
-from engine.scene.fields import Finite, Positive
+from engine.scene.fields import Finite, Positive, key
 
 
 class MurnaghanParameters(AlgebraicEquationOfState):
-    """Matter whose bulk modulus is linear in pressure, K + n P; heat makes no pressure.
+    """Matter whose bulk modulus is linear in pressure, K + n P; heat makes no pressure."""
 
-    K: bulk modulus [Pa] at the reference state.
-    n: its derivative dK/dP by pressure [-].
-    """
-
-    form: Literal["murnaghan"] = "murnaghan"
-    K: Positive
-    n: Annotated[Finite, Field(gt=1.0)]
+    form: Annotated[Literal["murnaghan"], key("form of the equation of state")] = "murnaghan"
+    K: Annotated[Positive, key("bulk modulus at the reference state", "Pa")]
+    n: Annotated[Finite, Field(gt=1.0), key("derivative dK/dP of the bulk modulus", "1")]
 
     @staticmethod
     def formula(m: Any, mu: Any, E: Any) -> tuple[Any, Any]:

@@ -18,10 +18,11 @@ from engine.scene.fields import (
     Positive,
     Vector,
     Whole,
+    key,
     read_table,
     validate,
 )
-from engine.scene.material import FractureRules, Material
+from engine.scene.material import NEEDED, FractureRules, Material
 
 Fraction = Annotated[Number, Field(gt=0.0, le=1.0)]
 Seed = Annotated[Whole, Field(ge=0)]
@@ -40,43 +41,36 @@ AnyBody = Annotated[
 
 
 class Gravity(Frozen):
-    """Self-gravity of all particles.
+    """Self-gravity of all particles (engine/physics.md, section 7)."""
 
-    softening: radius of the ball that stands for one particle, in units of the largest spacing h.
-    interval: time [s] for which one evaluation, made at positions half of it ahead, is held.
-    opening: size over distance below which a group of particles acts as a whole; 0 sums over all pairs.
-    """
-
-    softening: Positive = 1.0
-    interval: Positive = 20.0
-    opening: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.4
+    softening: Annotated[
+        Positive, key("radius of the ball that stands for a particle, in the largest particle spacing", "1")
+    ] = 1.0
+    interval: Annotated[Positive, key("time between evaluations of gravity, made for its middle", "s")] = 20.0
+    opening: Annotated[
+        Number,
+        Field(ge=0.0, le=1.0),
+        key("size over distance below which a group of particles acts as a whole; 0 sums over all pairs", "1"),
+    ] = 0.4
 
 
 class ViscosityCoefficients(Frozen):
-    """Explicit viscous stress.
+    """Explicit viscous stress (engine/physics.md, section 6)."""
 
-    shear: kinematic shear viscosity nu [m^2/s].
-    bulk: kinematic bulk viscosity zeta [m^2/s].
-    shock_linear, shock_quadratic: von Neumann-Richtmyer coefficients [-], in compression only.
-    """
-
-    shear: NonNegative = 0.0
-    bulk: NonNegative = 0.0
-    shock_linear: NonNegative = 0.0
-    shock_quadratic: NonNegative = 0.0
+    shear: Annotated[NonNegative, key("kinematic shear viscosity", "m2 s-1")] = 0.0
+    bulk: Annotated[NonNegative, key("kinematic bulk viscosity", "m2 s-1")] = 0.0
+    shock_linear: Annotated[NonNegative, key("linear von Neumann-Richtmyer coefficient", "1")] = 0.0
+    shock_quadratic: Annotated[NonNegative, key("quadratic von Neumann-Richtmyer coefficient", "1")] = 0.0
 
 
 class Wall(Frozen):
-    """A rigid plane; matter is on the side that its normal points to.
+    """A rigid plane; matter is on the side that its normal points to."""
 
-    point: any point of the plane [m].
-    normal: direction into the matter, of any length.
-    friction: coefficient of Coulomb friction [-], 0 slips; `stick` holds whatever touches it.
-    """
-
-    point: Vector = (0.0, 0.0, 0.0)
-    normal: Vector = (0.0, 0.0, 1.0)
-    friction: Literal["stick"] | NonNegative = 0.0
+    point: Annotated[Vector, key("any point of the plane", "m")] = (0.0, 0.0, 0.0)
+    normal: Annotated[Vector, key("direction into the matter, of any length", "1")] = (0.0, 0.0, 1.0)
+    friction: Annotated[
+        Literal["stick"] | NonNegative, key("coefficient of Coulomb friction; `stick` holds what touches it", "1")
+    ] = 0.0
 
     @model_validator(mode="after")
     def _has_a_direction(self) -> Self:
@@ -88,26 +82,20 @@ class Wall(Frozen):
 class Physics(Frozen):
     """The parts of physics a scene uses; `false` leaves a part out, and it then costs nothing.
 
-    Pressure is that of the materials' equation of state, of one form in all bodies; without `energy` it follows the
-    cold curve, and the ledger has no internal energy.
-    `shear` adds the Hencky deviatoric stress, `strength` its radial return;
-    `uniform_gravity` [m/s^2] takes the place of self-gravity.
-
-    sound_speed: factor on the speed of sound, in (0, 1]; below 1 a late-stage approximation, in longer time steps, for
-        motion that stays slow against the slower sound: elastic moduli are multiplied by its square, so elastic strain
-        and energy grow by 1/sound_speed^2, and shocks are wrong. What is given as a stress (strength, friction,
-        hydrostatic pressure, the tension that opens a flaw) stays (engine/physics.md, section 12).
+    Pressure is that of the materials' equation of state, of one form in all bodies. `sound_speed` below 1 is a
+    late-stage approximation in longer time steps (engine/physics.md, section 12): elastic moduli are multiplied by its
+    square, so elastic strain and energy grow by 1/sound_speed^2 and shocks are wrong; what is given as a stress stays.
     """
 
-    energy: bool = True
-    shear: bool = True
-    strength: bool = True
-    fracture: OrOff[FractureRules] = FractureRules()
-    gravity: OrOff[Gravity] = Gravity()
-    viscosity: OrOff[ViscosityCoefficients] = None
-    uniform_gravity: OrOff[Vector] = None
-    walls: tuple[Wall, ...] = ()
-    sound_speed: Fraction = 1.0
+    energy: Annotated[bool, key("internal energy; without it pressure follows the cold curve")] = True
+    shear: Annotated[bool, key("Hencky's deviatoric stress")] = True
+    strength: Annotated[bool, key("limit of the deviatoric stress, by radial return")] = True
+    fracture: Annotated[OrOff[FractureRules], key("rules of fracture")] = FractureRules()
+    gravity: Annotated[OrOff[Gravity], key("self-gravity")] = Gravity()
+    viscosity: Annotated[OrOff[ViscosityCoefficients], key("viscosity")] = None
+    uniform_gravity: Annotated[OrOff[Vector], key("acceleration in place of self-gravity", "m s-2")] = None
+    walls: Annotated[tuple[Wall, ...], key("rigid planes")] = ()
+    sound_speed: Annotated[Fraction, key("factor on the speed of sound", "1")] = 1.0
 
     @model_validator(mode="after")
     def _parts_fit_together(self) -> Self:
@@ -123,43 +111,34 @@ class Physics(Frozen):
 
 
 class Numerics(Frozen):
-    """Resolution in space and time.
+    """Resolution in space and time; the grid is dx = h particles_per_cell^(1/3) (for `f32`: physics.md, section 10)."""
 
-    particles_per_cell: fixes the grid, dx = h * particles_per_cell^(1/3).
-    cfl: time step in units of dx / (wave speed + particle speed).
-    precision: of all numbers on the device; see section 10 of engine/physics.md for what `f32` can and cannot do.
-    """
-
-    particles_per_cell: Positive = 4.0
-    cfl: Fraction = 0.5
-    precision: Precision = "f64"
+    particles_per_cell: Annotated[Positive, key("particles in a cell of the grid", "1")] = 4.0
+    cfl: Annotated[Fraction, key("time step in units of dx/(wave speed + particle speed)", "1")] = 0.5
+    precision: Annotated[Precision, key("precision of numbers on the device")] = "f64"
 
 
 class Output(Frozen):
-    """What is written while the scene runs.
+    """What is written while the scene runs."""
 
-    history_interval: simulated time [s] between rows of the conserved quantities.
-    snapshot_interval: simulated time [s] between particle snapshots; `false` writes none.
-    """
-
-    history_interval: Positive = 100.0
-    snapshot_interval: OrOff[Positive] = 1000.0
+    history_interval: Annotated[Positive, key("simulated time between rows of the history", "s")] = 100.0
+    snapshot_interval: Annotated[OrOff[Positive], key("simulated time between snapshots; false for none", "s")] = 1000.0
 
 
 class Scene(Frozen):
-    """Everything a run depends on; the same scene gives the same results.
+    """Everything a run depends on; the same scene gives the same results."""
 
-    period: length [m] after which space repeats along each axis, a multiple of four cells; `false` is unbounded.
-    """
-
-    physics: Physics = Physics()  # checked before bodies, whose start depends on it
-    bodies: Annotated[tuple[AnyBody, ...], Field(min_length=1)]
-    period: tuple[OrOff[Positive], OrOff[Positive], OrOff[Positive]] = (None, None, None)
-    start_time: Finite = 0.0
-    end_time: Finite
-    seed: Seed = 1
-    numerics: Numerics = Numerics()
-    output: Output = Output()
+    physics: Annotated[Physics, key("parts of physics")] = Physics()  # checked before bodies, whose start depends on it
+    bodies: Annotated[tuple[AnyBody, ...], Field(min_length=1), key("spheres and boxes")]
+    period: Annotated[
+        tuple[OrOff[Positive], OrOff[Positive], OrOff[Positive]],
+        key("length after which space repeats along each axis, a multiple of four cells; false for none", "m"),
+    ] = (None, None, None)
+    start_time: Annotated[Finite, key("time at the start", "s")] = 0.0
+    end_time: Annotated[Finite, key("time at the end", "s")]
+    seed: Annotated[Seed, key("seed of the particles and flaws", "1")] = 1
+    numerics: Annotated[Numerics, key("resolution in space and time")] = Numerics()
+    output: Annotated[Output, key("what is written")] = Output()
 
     @field_validator("bodies")
     @classmethod
@@ -181,6 +160,17 @@ class Scene(Frozen):
         forms = sorted({body.material.eos.form for body in self.bodies})
         if len(forms) > 1:
             raise ValueError(f"'eos' must be of one form in all bodies of a scene (given {', '.join(forms)})")
+        return self
+
+    @model_validator(mode="after")
+    def _knows_the_constants_of_its_physics(self) -> Self:
+        parts = [part for part in NEEDED if getattr(self.physics, part)]
+        for number, body in enumerate(self.bodies):
+            for part, keys in body.material.lacks(parts).items():
+                raise ValueError(
+                    f"'bodies.{number}.material' ({body.material.name or 'without name'}) lacks {', '.join(keys)}, "
+                    f"which 'physics.{part}' needs: give them, or set physics.{part} = false"
+                )
         return self
 
     @model_validator(mode="after")

@@ -1,28 +1,28 @@
 """Constants of Tillotson's equation of state and its answers on the host (engine/physics.md, sections 2 and 8)."""
 
 import math
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
 from engine.scene.equation_of_state import Array, EquationOfState
-from engine.scene.fields import NonNegative, Positive
+from engine.scene.fields import NonNegative, Positive, key
 
 
 class TillotsonParameters(EquationOfState):
-    """Tillotson constants; the defaults are basalt (Benz & Asphaug 1999)."""
+    """Constants of Tillotson 1962 in the form of Benz & Asphaug 1999."""
 
-    form: Literal["tillotson"] = "tillotson"
-    a: Positive = 0.5
-    b: Positive = 1.5
-    A: Positive = 2.67e10
-    B: NonNegative = 2.67e10
-    E0: Positive = 4.87e8
-    E_iv: Positive = 4.72e6
-    E_cv: Positive = 1.82e7
-    alpha: NonNegative = 5.0
-    beta: NonNegative = 5.0
+    form: Annotated[Literal["tillotson"], key("form of the equation of state")] = "tillotson"
+    a: Annotated[Positive, key("a of Tillotson's equation of state", "1")]
+    b: Annotated[Positive, key("b of Tillotson's equation of state", "1")]
+    A: Annotated[Positive, key("bulk modulus A of Tillotson's equation of state", "Pa")]
+    B: Annotated[NonNegative, key("modulus B of Tillotson's equation of state", "Pa")]
+    E0: Annotated[Positive, key("specific energy E0 of Tillotson's equation of state", "J kg-1")]
+    E_iv: Annotated[Positive, key("specific energy of incipient vaporisation", "J kg-1")]
+    E_cv: Annotated[Positive, key("specific energy of complete vaporisation", "J kg-1")]
+    alpha: Annotated[NonNegative, key("decay alpha of the thermal pressure of vapour", "1")]
+    beta: Annotated[NonNegative, key("decay beta of the cold pressure of vapour", "1")]
 
     @model_validator(mode="after")
     def _vaporises_completely_after_it_begins(self) -> Self:

@@ -41,22 +41,22 @@ def approach(position: Array, velocity: Array, total_mass: float, separation: fl
         total_mass: mass of both bodies [kg]; 0 for bodies without gravity.
         separation: distance of the centres at the start [m].
     """
-    mu = G_NEWTON * total_mass
-    farthest = apocentre(position, velocity, mu)
+    gm = G_NEWTON * total_mass
+    farthest = apocentre(position, velocity, gm)
     if farthest <= NEAREST_START * float(np.linalg.norm(position)):
         return _straight_back(position, velocity)
-    state, duration, arrived = _backward(np.concatenate([position, velocity]), mu, separation)
+    state, duration, arrived = _backward(np.concatenate([position, velocity]), gm, separation)
     return Approach(state[:3], state[3:], duration, "separation" if arrived else "apocentre")
 
 
-def apocentre(position: Array, velocity: Array, mu: float) -> float:
+def apocentre(position: Array, velocity: Array, gm: float) -> float:
     """Largest distance [m] of a two-body orbit; infinite when unbound."""
-    energy = 0.5 * float(velocity @ velocity) - mu / float(np.linalg.norm(position))
+    energy = 0.5 * float(velocity @ velocity) - gm / float(np.linalg.norm(position))
     if energy >= 0.0:
         return float("inf")
     momentum = float(np.linalg.norm(np.cross(position, velocity)))
-    eccentricity = float(np.sqrt(max(0.0, 1.0 + 2.0 * energy * (momentum / mu) ** 2)))
-    return -mu / (2.0 * energy) * (1.0 + eccentricity)
+    eccentricity = float(np.sqrt(max(0.0, 1.0 + 2.0 * energy * (momentum / gm) ** 2)))
+    return -gm / (2.0 * energy) * (1.0 + eccentricity)
 
 
 def _straight_back(position: Array, velocity: Array) -> Approach:
@@ -76,19 +76,19 @@ def _distance(separation: float) -> Callable[[float, Array], float]:
     return beyond
 
 
-def _backward(contact: Array, mu: float, separation: float) -> tuple[Array, float, bool]:
+def _backward(contact: Array, gm: float, separation: float) -> tuple[Array, float, bool]:
     """State where the pair was at `separation` or else at its apocentre, the time from there, and whether it was."""
 
     def rate(time: float, state: Array) -> Array:
-        return np.concatenate([state[3:], -mu * state[:3] / np.linalg.norm(state[:3]) ** 3])
+        return np.concatenate([state[3:], -gm * state[:3] / np.linalg.norm(state[:3]) ** 3])
 
     events = [_distance(separation), _turning_point]
     for event in events:
         event.terminal, event.direction = True, 1.0  # type: ignore[attr-defined]
     distance = float(np.linalg.norm(contact[:3]))
     longest = -1e6 * distance / float(np.linalg.norm(contact[3:]))
-    bound = np.isfinite(apocentre(contact[:3], contact[3:], mu))
-    step = 0.01 * (distance**3 / mu) ** 0.5 if bound else np.inf  # so that none passes the separation twice unseen
+    bound = np.isfinite(apocentre(contact[:3], contact[3:], gm))
+    step = 0.01 * (distance**3 / gm) ** 0.5 if bound else np.inf  # so that none passes the separation twice unseen
     path = solve_ivp(
         rate, (0.0, longest), contact, method="DOP853", events=events, rtol=1e-12, atol=1e-9, max_step=step
     )

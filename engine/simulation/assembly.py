@@ -1,6 +1,6 @@
-"""Which part of the engine stands for each entry of a scene's physics.
+"""Build the laws, the gravity and the walls that a scene's physics names.
 
-What a scene leaves out is stood for by a part that holds no field and does nothing, so it costs nothing.
+For physics that a scene leaves out a null part is built, without fields and without effect.
 """
 
 from engine.gravity.barnes_hut import BarnesHut
@@ -26,8 +26,13 @@ from engine.state.particles import Particles
 
 
 def constitution(scene: Scene, particles: Particles) -> Constitution:
-    """The response of matter."""
-    physics, materials = scene.physics, scene.materials
+    """Return the laws of matter.
+
+    Args:
+        scene: its physics and materials.
+        particles: fields in which the laws keep their state.
+    """
+    physics = scene.physics
     return Constitution(
         particles,
         _equation_of_state(scene),
@@ -35,26 +40,30 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
         _shear(scene, particles),
         _damage(scene, particles),
         Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
-        materials,
     )
 
 
 def gravity(scene: Scene, particles: Particles) -> Gravity:
-    """The pull on every particle; self-gravity by a tree, or as the sum over all pairs at opening 0."""
+    """Return self-gravity by a tree, by the sum over all pairs at opening angle 0, uniform gravity, or none.
+
+    Args:
+        scene: its physics and particle spacing.
+        particles: field in which self-gravity keeps the acceleration.
+    """
     physics = scene.physics
     if physics.gravity:
         radius, opening = physics.gravity.softening * scene.spacing, physics.gravity.opening
         return BarnesHut(particles, radius, opening) if opening > 0.0 else DirectSum(particles, radius)
-    return UniformGravity(particles, physics.uniform_gravity) if physics.uniform_gravity else NoGravity()
+    return UniformGravity(physics.uniform_gravity) if physics.uniform_gravity else NoGravity()
 
 
 def walls(scene: Scene) -> Boundary:
-    """Rigid planes."""
+    """Return the rigid planes of a scene."""
     return Walls(scene.physics.walls) if scene.physics.walls else NoWalls()
 
 
 def _equation_of_state(scene: Scene) -> EquationOfStateLaw:
-    """Pressure by the form that all bodies share; without internal energy Tillotson's follows the cold curve."""
+    """Law of the form that all bodies have; Tillotson's on the cold curve if no internal energy is computed."""
     materials = scene.materials
     eos = materials[0].eos
     if isinstance(eos, TillotsonParameters):
@@ -63,6 +72,7 @@ def _equation_of_state(scene: Scene) -> EquationOfStateLaw:
 
 
 def _shear(scene: Scene, particles: Particles) -> ShearLaw:
+    """Hencky's law with or without strength, or none."""
     if not scene.physics.shear:
         return Fluid()
     strength = Strength(scene.materials) if scene.physics.strength else Unlimited()
@@ -70,7 +80,7 @@ def _shear(scene: Scene, particles: Particles) -> ShearLaw:
 
 
 def _damage(scene: Scene, particles: Particles) -> DamageLaw:
-    """Damage that grows, that stays, or none."""
+    """Damage with growth, constant damage, or none."""
     rule = scene.physics.fracture
     if rule:
         return Damage(particles, Fracture(scene.bodies, rule, all_flaws(scene)))

@@ -11,11 +11,11 @@ from engine.scene.scene import Scene
 from engine.simulation.conservation import Row
 
 LARGEST_COMPRESSION = 1e6
-"""Bounds of rho/rho0 beyond this are none."""
+"""Compression rho/rho0 [-] above which a bound counts as infinite."""
 
 
 def speed_scale(scene: Scene, start: Row) -> float:
-    """Speed [m/s] that the scene can give to all its matter, were every energy turned into motion.
+    """Return the speed [m/s] of all matter if every energy of the start became kinetic.
 
     Args:
         scene: what is simulated.
@@ -28,7 +28,11 @@ def speed_scale(scene: Scene, start: Row) -> float:
 
 
 def _fall(scene: Scene) -> float:
-    """Speed [m/s] that gravity can give: from rest to the centre of all mass in one softened ball, or all the time."""
+    """Speed [m/s] that gravity can add.
+
+    Self-gravity: of a fall from rest at infinity to the centre of one ball that has all mass and the softening radius.
+    Uniform gravity: of a fall for the whole simulated time.
+    """
     gravity = scene.physics.gravity
     if gravity:
         mass = sum(body.mass for body in scene.bodies)
@@ -38,7 +42,12 @@ def _fall(scene: Scene) -> float:
 
 
 def compression_limit(material: Material, energy: float) -> float:
-    """rho/rho0 at which cold compression has used up a specific energy [J/kg]; infinite if it never does."""
+    """Return rho/rho0 [-] at which the cold energy of compression equals a given energy; infinite if it never does.
+
+    Args:
+        material: has the equation of state.
+        energy: specific energy [J/kg].
+    """
 
     def missing(log_eta: float) -> float:
         return material.eos.cold_energy(material.rho0, math.exp(log_eta)) - energy
@@ -48,11 +57,11 @@ def compression_limit(material: Material, energy: float) -> float:
 
 
 def energy_growth(scene: Scene, row: Row, start: Row) -> float:
-    """Growth of the total energy as a share of all energies that can turn into one another [-].
+    """Return the growth of the total energy relative to the sum of all energies [-].
 
-    The total is that of one time, kinetic energy taken half a step ahead: the work of stress then changes nothing in
-    it, and only the transfer does, which dissipates. Taken as it is, it would swing by up to omega dt/2 with the
-    shortest waves. Growth that is smaller than the dissipation meanwhile does not show.
+    Kinetic energy, which belongs half a step before the other energies, is first taken to their time by the work of
+    half a step: otherwise the total oscillates by up to omega dt/2 of the energy of a wave of frequency omega. The
+    total then changes by the dissipation of the transfer alone, which can mask a smaller growth.
 
     Args:
         scene: what is simulated.
@@ -69,25 +78,26 @@ def _total(row: Row) -> float:
 
 
 def _rounding(scene: Scene, start: Row) -> float:
-    """Energy [J] that is nothing: the last digit of what waves carry, for scenes that start without any."""
+    """Round-off of the energy of sound, epsilon m c^2 [J]: the scale of energy of a scene that starts without any."""
     speed = max(material.longitudinal_speed for material in scene.materials)
     return float(np.finfo(np.float64).eps) * float(start["mass"]) * speed**2
 
 
 def momentum_drift(row: Row, start: Row) -> float:
-    """Size of the change of the total momentum [kg m/s]."""
+    """Return the magnitude of the change of the total momentum [kg m/s] between the first row and another."""
     return float(np.linalg.norm(row["momentum"] - start["momentum"]))
 
 
 def keeps_momentum(scene: Scene) -> bool:
-    """Whether nothing from outside pushes."""
+    """Whether total momentum is conserved: neither walls nor uniform gravity act."""
     return not scene.physics.walls and not any(scene.physics.uniform_gravity or ())
 
 
 def keeps_energy(scene: Scene) -> bool:
-    """Whether the total is known.
+    """Whether total energy is conserved but for dissipation.
 
-    Not without internal energy, nor where matter falls along a periodic axis, and is lifted back each period.
+    It is not without internal energy, nor with uniform gravity along a periodic axis: matter that leaves at the lower
+    end enters again at the upper one.
     """
     pull = scene.physics.uniform_gravity or (0.0, 0.0, 0.0)
     falls = any(length and along for length, along in zip(scene.period, pull, strict=True))

@@ -1,16 +1,16 @@
-"""What a run must conserve, summed on the host in a fixed order (engine/physics.md, section 2)."""
+"""Conserved quantities, summed on the host in a fixed order (engine/physics.md, section 2)."""
 
 from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.arrays import Scalars, Vector
 from engine.mpm.apic import affine_inertia
 from engine.state.particles import Arrays
 
-Vector = NDArray[np.float64]
 Row = dict[str, NDArray[np.float64]]
-"""One row of the history: a name and its value."""
+"""One row of the history: values by name (engine/quantities.py), numbers or vectors of shape [3]."""
 
 
 @dataclass(frozen=True)
@@ -18,16 +18,16 @@ class Totals:
     """Sums over all particles.
 
     Attributes:
-        mass: [kg].
-        momentum: [kg m/s], shape [3].
-        angular_momentum: about the origin [kg m^2/s], affine part included, shape [3].
+        mass: total mass [kg].
+        momentum: total momentum [kg m/s], shape [3].
+        angular_momentum: total angular momentum about the origin [kg m^2/s], affine part included, shape [3].
         kinetic_energy: of the particles' mean motion [J].
         affine_kinetic_energy: of the motion inside particles [J].
-        internal_energy: all work done by stress, so elastic energy too [J].
+        internal_energy: all work of stress, elastic energy included [J].
         elastic_energy: part of the internal energy that is stored in strain [J].
-        gravitational_energy: [J].
-        half_step_work: of stress and gravity in half the next step [J]: velocities belong half a step before positions,
-            so this takes kinetic energy to the time of the others.
+        gravitational_energy: potential energy of gravity [J].
+        half_step_work: work of stress and gravity in half the next step [J]. Velocities belong half a step before
+            positions; this takes kinetic energy to the time of the other energies.
     """
 
     mass: float
@@ -42,18 +42,19 @@ class Totals:
 
     @property
     def total_energy(self) -> float:
-        """Energy that only the dissipation of the scheme can lower [J]."""
+        """Sum of kinetic, affine, internal and gravitational energy [J]; dissipation lowers it."""
         return self.kinetic_energy + self.affine_kinetic_energy + self.internal_energy + self.gravitational_energy
 
 
-def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: float, half_step_work: float) -> Totals:
-    """Conserved quantities of a state.
+def totals(state: Arrays, dx: float, elastic: Scalars, gravitational_energy: float, half_step_work: float) -> Totals:
+    """Return the conserved quantities of a state.
 
     Args:
         state: fields x, v, C, E and mass of every particle.
         dx: grid spacing [m].
         elastic: elastic energy of every particle [J], shape [particle_count].
-        gravitational_energy, half_step_work: [J].
+        gravitational_energy: potential energy of gravity [J].
+        half_step_work: work of stress and gravity in half the next step [J].
     """
     m, x, v, C, E = (state[name] for name in ("mass", "x", "v", "C", "E"))
     inertia = affine_inertia(dx)
@@ -71,8 +72,8 @@ def totals(state: Arrays, dx: float, elastic: Vector, gravitational_energy: floa
     )
 
 
-def half_step_work(state: Arrays, rho0: Vector, dt: float) -> float:
-    """Work [J] of stress and gravity on the particles' present motion in half a step.
+def half_step_work(state: Arrays, rho0: Scalars, dt: float) -> float:
+    """Return the work [J] of stress and gravity in half a step, (dt/2) sum of m (v.g - tau:d / rho0).
 
     Args:
         state: fields v, C, tau, mass and acceleration of every particle.
@@ -86,8 +87,8 @@ def half_step_work(state: Arrays, rho0: Vector, dt: float) -> float:
     return 0.5 * dt * float(np.sum(m * (np.einsum("pi,pi->p", state["v"], state["acceleration"]) - strain / rho0)))
 
 
-def elastic_energy(state: Arrays, rho0: Vector, bulk: Vector, shear: Vector) -> Vector:
-    """Energy stored in the strain of every particle [J], for small strains.
+def elastic_energy(state: Arrays, rho0: Scalars, bulk: Scalars, shear: Scalars) -> Scalars:
+    """Return the elastic energy of every particle [J], V (P^2/2K + s:s/4G) for small strains, shape [particle_count].
 
     Args:
         state: fields j, tau and mass of every particle.
@@ -102,6 +103,11 @@ def elastic_energy(state: Arrays, rho0: Vector, bulk: Vector, shear: Vector) -> 
 
 
 def as_row(totals_now: Totals, **others: float) -> Row:
-    """One row of the history."""
+    """Return a row of the history.
+
+    Args:
+        totals_now: conserved quantities.
+        others: the other quantities of the row, by name.
+    """
     row = {**asdict(totals_now), "total_energy": totals_now.total_energy, **others}
     return {name: np.asarray(value, dtype=np.float64) for name, value in row.items()}

@@ -1,6 +1,6 @@
-"""The guard of a run: compares its state with the scene's bounds whenever something is written.
+"""Guard of a run: checks its state against bounds that follow from the scene (engine/physics.md, section 13).
 
-Section 13 of engine/physics.md gives the reason for each bound. A check reads the state and changes nothing.
+A check reads the state and changes nothing.
 """
 
 import math
@@ -24,28 +24,34 @@ from engine.simulation.conservation import Row
 from engine.state.particles import Arrays, Particles
 
 SPEED_FACTOR = 10.0
-"""Largest speed in units of the scene's: rebounds reach two or three of them, jets a few."""
+"""Largest speed in units of the scene's [-]: rebounds reach two or three of them, jets a few."""
 
 ENERGY_GROWTH = 0.05
-"""Largest growth of the total energy, in the measure of `energy_growth`; all of it is the most that can be lost."""
+"""Largest growth of the total energy in the measure of `energy_growth` [-]; its largest loss is 1."""
 
 LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
-"""Largest change of the total momentum, in units of mass times the scene's speeds."""
+"""Largest change of the total momentum in units of mass times the scene's speeds [-]."""
 
 STEPS_FACTOR = 1e4
-"""Most time steps that a run may need, in units of what its first step foresees."""
+"""Most time steps of a run, in units of its length over its first step [-]."""
 
 LOOK_CLOSER = "a smaller output.history_interval shows what grew first, and when"
-"""Advice where the cause was lost: the state is beyond all bounds before one of them was looked at."""
+"""Advice for a state that is not finite or has no time step: what grew first was not checked in time."""
 
 
 class Guard:
-    """The bounds of one run.
+    """Bounds of one run.
 
     Args:
         scene: what is simulated.
         start: first row of the run's history.
-        dt: time step [s] that the scene begins with.
+        dt: first time step [s].
+
+    Attributes:
+        speed: largest speed [m/s].
+        compression: largest rho/rho0 [-].
+        momentum: scale of the total momentum [kg m/s].
+        shortest_step: shortest time step [s].
     """
 
     def __init__(self, scene: Scene, start: Row, dt: float) -> None:
@@ -56,11 +62,11 @@ class Guard:
         self.momentum = float(start["mass"]) * (scale + max(material.longitudinal_speed for material in materials))
 
     def check(self, row: Row, state: Arrays) -> None:
-        """Look at a row of the history and at all particles of the same moment.
+        """Check a row of the history and all particles at the same time.
 
         Args:
             row: conserved quantities.
-            state: every field of every particle.
+            state: all fields of all particles.
 
         Raises:
             GuardFault: a quantity is outside its bounds.
@@ -75,10 +81,15 @@ class Guard:
         self._check_energy(row, time)
 
     def check_time_step(self, dt: float, time: float, particles: Particles) -> None:
-        """Look at the next time step [s] at a time [s]; the particle with the highest rates answers for a short one.
+        """Check the next time step.
+
+        Args:
+            dt: time step [s].
+            time: simulated time [s].
+            particles: of which a fault names the one that demands the shortest step.
 
         Raises:
-            GuardFault: at such steps the run would not end.
+            GuardFault: the step is shorter than the shortest one.
         """
         if not dt >= self.shortest_step:
             state = particles.read("v", "C")
@@ -107,14 +118,14 @@ class Guard:
 
 
 def require_finite(state: Arrays, time: float) -> None:
-    """Accept only finite numbers.
+    """Check that all numbers are finite.
 
     Args:
         state: fields of every particle.
         time: simulated time [s].
 
     Raises:
-        GuardFault: names the first field, and its first particle, that holds another one.
+        GuardFault: names the first field that is not, and its first particle.
     """
     for name, values in state.items():
         bad = ~np.isfinite(values).reshape(len(values), -1).all(axis=1)
@@ -123,7 +134,7 @@ def require_finite(state: Arrays, time: float) -> None:
 
 
 def _require_finite_row(row: Row, time: float) -> None:
-    """Accept only finite totals: those of finite particles may overflow, and no bound holds what is not a number."""
+    """Check that all totals are finite: sums of finite numbers may overflow, and NaN passes every comparison."""
     for name, value in row.items():
         if not np.isfinite(value).all():
             raise stop(name, math.nan, "finite", time, advice=LOOK_CLOSER)

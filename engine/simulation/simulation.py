@@ -1,11 +1,13 @@
-"""A scene in motion: assembled from the parts it names, advanced from one pause to the next."""
+"""Simulation of a scene: its parts on the device, its steps, and the events between them."""
 
 import math
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.arrays import Scalars, Vectors
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
@@ -23,7 +25,23 @@ from engine.state.clock import FAULT_NONE, Clock
 from engine.state.particles import Arrays, Particles
 
 LAUNCHES = 64
-"""Most steps launched before the host looks whether they ran."""
+"""Most steps that are launched before the host checks whether they ran."""
+
+
+@dataclass(frozen=True)
+class Events:
+    """Times of what happens between steps, and what it found when it last happened.
+
+    Attributes:
+        gravity_due: simulated time [s] at which self-gravity is next computed; infinite without self-gravity.
+        gravity_change: relative change of the acceleration between its last two computations [-].
+        gravity_force, gravity_torque: relative net force and torque removed [-], see `NetForce`.
+    """
+
+    gravity_due: float
+    gravity_change: float = 0.0
+    gravity_force: float = 0.0
+    gravity_torque: float = 0.0
 
 
 class Simulation:
@@ -31,6 +49,15 @@ class Simulation:
 
     Args:
         scene: what to simulate; Taichi must have been started.
+
+    Attributes:
+        particles, clock: state on the device.
+        constitution, gravity, walls: physics of the scene.
+        stencil, transfer: the grid and the kernels of a step.
+        events: times of what happens between steps.
+
+    Raises:
+        SceneError: this process has another precision than the scene.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -43,8 +70,7 @@ class Simulation:
         self.constitution = assembly.constitution(scene, self.particles)
         self.walls = assembly.walls(scene)
         self._make_room(scene.particles // 8)
-        self.gravity_due = scene.start_time if physics.gravity else math.inf
-        self.gravity_change = self.gravity_force = self.gravity_torque = 0.0
+        self.events = Events(gravity_due=scene.start_time if physics.gravity else math.inf)
 
     @property
     def time(self) -> float:
@@ -61,22 +87,30 @@ class Simulation:
         """Whether the end time is reached."""
         return self.time >= self.scene.end_time
 
-    def start(self, **changes: NDArray[Any]) -> None:
-        """Put all particles where the scene has them; `changes` replace whole fields of their state."""
+    def start(self, **changes: NDArray[np.generic]) -> None:
+        """Set the initial state of the scene.
+
+        Args:
+            changes: whole fields of the particles that replace the scene's own, shape [particle_count, ...].
+        """
         self.particles.write({**initial_state(self.scene), **changes})
         self.rebuild_blocks()
         self.clock.rate[None] = first_rate(self.scene, self.particles.read("C", "tau", "body"))
 
     def advance(self, until: float, steps: int = LAUNCHES) -> None:
-        """Take at most some `steps`, none of them after the first that reaches `until` [s].
+        """Advance by some steps, at most to the first that reaches a time.
 
-        Which steps are taken depends on the scene alone, never on how they are spread over calls.
+        The steps depend on the scene alone, not on the calls of this method.
+
+        Args:
+            until: simulated time [s].
+            steps: most steps.
 
         Raises:
             GuardFault: a particle left the range in which the equations hold.
         """
         self._handle_events()
-        self.clock.pause_time[None] = min(until, self.gravity_due)
+        self.clock.pause_time[None] = min(until, self.events.gravity_due)
         self._launch(steps)
         self._check_fault()
 
@@ -93,9 +127,25 @@ class Simulation:
             x, block = wrap(x, block, self.scene.dx, self.scene.period_blocks)
             self.particles.write({"x": x})
         self.particles.write({"origin": block})
-        self.use_stored_blocks()
+        self._build_blocks()
 
-    def use_stored_blocks(self) -> None:
+    def clock_state(self) -> dict[str, float | int]:
+        """Return what later steps depend on beside the particles: the clock and the events."""
+        return {**self.clock.read(), **asdict(self.events)}
+
+    def restore(self, particles: Arrays, clock_state: Mapping[str, float | int]) -> None:
+        """Set the state between two steps of an earlier simulation of the same scene.
+
+        Args:
+            particles: all fields that this scene allocates.
+            clock_state: what `clock_state` returned at the same time.
+        """
+        self.particles.write(particles)
+        self._build_blocks()
+        self.clock.write(clock_state)
+        self.events = Events(**{field.name: clock_state[field.name] for field in fields(Events)})
+
+    def _build_blocks(self) -> None:
         """Build the blocks from where the particles were when blocks were last built."""
         blocks = build_blocks(self.particles.read("origin")["origin"], self.scene.period_blocks)
         if len(blocks.origin) > self.stencil.capacity:
@@ -112,7 +162,7 @@ class Simulation:
     def _handle_events(self) -> None:
         if self.clock.moved_out[None]:
             self.rebuild_blocks()
-        if self.time >= self.gravity_due:
+        if self.time >= self.events.gravity_due:
             self._update_gravity()
 
     def _update_gravity(self) -> None:
@@ -120,11 +170,10 @@ class Simulation:
         interval, dt = self.scene.physics.gravity.interval, self.next_dt
         before = self.particles.read("acceleration")["acceleration"]
         # mean time of the kicks that will use it: a step kicks from where particles are when it begins
-        taken_out = self.gravity.accelerate(ahead=0.5 * dt * (math.ceil(interval / dt) - 1))
-        self.gravity_force, self.gravity_torque = taken_out.force, taken_out.torque
+        removed = self.gravity.accelerate(ahead=0.5 * dt * (math.ceil(interval / dt) - 1))
         after = self.particles.read("acceleration")["acceleration"]
-        self.gravity_change = float(np.linalg.norm(after - before)) / max(float(np.linalg.norm(after)), 1e-300)
-        self.gravity_due = self.time + interval
+        change = float(np.linalg.norm(after - before)) / max(float(np.linalg.norm(after)), 1e-300)
+        self.events = Events(self.time + interval, change, removed.force, removed.torque)
 
     def _launch(self, most: int) -> None:
         left = min(self.clock.pause_time[None], self.scene.end_time) - self.time
@@ -147,22 +196,30 @@ class Simulation:
             j = float(self.particles.read("j")["j"][p])
             raise stop("det F", 1.0 + j, "above 0", self.time, p, advice=SMALLER_STEPS)
 
-    def _require_in_range(self, x: NDArray[np.float64]) -> None:
+    def _require_in_range(self, x: Vectors) -> None:
         far = out_of_range(x, self.scene.dx)
         if far.any():
             p, largest = int(np.argmax(far)), BLOCK_EDGE * HALF_RANGE * self.scene.dx
             distance, advice = float(np.abs(x[p]).max()), "end the run earlier, or make cells larger"
             raise stop("coordinate [m]", distance, f"below {largest:.3g}", self.time, p, advice=advice)
 
-    def totals(self) -> Totals:
-        """What the run must conserve, now."""
-        state = self.particles.read("x", "v", "C", "E", "mass", "j", "tau", "body", "acceleration")
+    def totals(self, state: Arrays | None = None) -> Totals:
+        """Return the conserved quantities at the present time.
+
+        Args:
+            state: all fields of all particles at this time; read from the device if `None`.
+        """
+        state = self.particles.read() if state is None else state
         materials, rho0 = self.scene.materials, self.rho0(state)
         bulk = np.array([material.eos.bulk_modulus() for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
         elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, rho0, self.next_dt)
-        return totals(state, self.scene.dx, elastic, self.gravity.energy(), work)
+        return totals(state, self.scene.dx, elastic, self.gravity.energy(state["x"], state["mass"]), work)
 
-    def rho0(self, state: Arrays) -> NDArray[np.float64]:
-        """Reference density of every particle [kg/m^3], shape [particle_count]."""
+    def rho0(self, state: Arrays) -> Scalars:
+        """Return the reference density of every particle [kg/m^3], shape [particle_count].
+
+        Args:
+            state: field body of every particle.
+        """
         return np.array([body.material.rho0 for body in self.scene.bodies])[state["body"]]

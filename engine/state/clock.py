@@ -1,4 +1,6 @@
-"""Time, time step and the reasons to pause, kept on the device so that steps need no answer from the host."""
+"""Clock on the device: time, time step and reasons to pause, so that steps do not wait for the host."""
+
+from collections.abc import Mapping
 
 import taichi as ti
 
@@ -6,19 +8,30 @@ from engine.device.backend import Real
 
 FAULT_NONE = 0
 FAULT_INVERTED = 1
+"""Fault of a particle with det F <= 0."""
 
 
 @ti.data_oriented
 class Clock:
-    """Chooses every time step from the fastest rate that the step before reported.
+    """Time, and the time step, which follows from the highest rate that the step before reported.
 
-    A step that must not run (`pause_time` reached, a particle out of its block, a fault) does nothing, so the host may
-    launch more steps than will run: results never depend on how many.
+    A step does nothing once `pause_time` is reached, a particle is out of its block, or there is a fault. The host may
+    therefore launch more steps than are run; results do not depend on how many.
 
     Args:
         start: first simulated time [s].
         end: last simulated time [s]; the last step ends on it exactly.
         longest_step: upper bound of the time step [s].
+
+    Attributes:
+        time, end, pause_time: simulated time [s] now, of the end, and up to which steps run.
+        dt: length of the last step [s].
+        rate, least_rate: inverse of the next time step [1/s], and its lower bound.
+        step: number of steps done.
+        running: 1 during a step that runs, 0 during one that does nothing.
+        moved_out: 1 if a particle is out of its block.
+        fault, fault_particle: kind of a fault, and number of the particle in the scene.
+        kept: fields that later steps depend on, by name.
     """
 
     def __init__(self, start: float, end: float, longest_step: float) -> None:
@@ -29,10 +42,26 @@ class Clock:
         self.time[None], self.end[None], self.pause_time[None] = start, end, start
         self.least_rate[None] = 1.0 / longest_step
         self.fault_particle[None] = 2**31 - 1
+        self.kept = {
+            "time": self.time,
+            "dt": self.dt,
+            "rate": self.rate,
+            "step": self.step,
+            "moved_out": self.moved_out,
+        }
+
+    def read(self) -> dict[str, float | int]:
+        """Return the fields that later steps depend on, by name."""
+        return {name: field[None] for name, field in self.kept.items()}
+
+    def write(self, values: Mapping[str, float | int]) -> None:
+        """Set the fields that `read` returns."""
+        for name, field in self.kept.items():
+            field[None] = values[name]
 
     @ti.func
     def begin_step(self):
-        """Decide whether this step runs, and how long it is."""
+        """Set `running`, and, if the step runs, its length and the time after it."""
         self.running[None] = 0
         if self.time[None] < self.pause_time[None] and self.moved_out[None] == 0 and self.fault[None] == FAULT_NONE:
             self.running[None] = 1
@@ -47,7 +76,7 @@ class Clock:
 
     @ti.func
     def report_rate(self, rate):
-        """Take note of an inverse time step [1/s] that this step demands of the next."""
+        """Report an inverse time step [1/s] that the next step must not fall below."""
         ti.atomic_max(self.rate[None], rate)
 
     @ti.func

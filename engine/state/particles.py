@@ -6,10 +6,12 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
+from engine.arrays import Indices
 from engine.device.backend import Real, mat3, place3, vec3, vec6
 from engine.device.fields import capacity, overwrite
 
 Arrays = dict[str, NDArray[Any]]
+"""Fields of every particle by name, shape [particle_count, ...]: integers for `body` and `origin`, else doubles."""
 
 FIELD_TYPES = {
     "x": place3,
@@ -25,26 +27,38 @@ FIELD_TYPES = {
     "damage_root": Real,
     "acceleration": vec3,
 }
-"""Type of every quantity."""
+"""Taichi's type of every quantity."""
 
 CORE_FIELDS = ("x", "v", "C", "j", "tau", "mass", "body", "origin")
-"""Quantities without which no particle moves."""
+"""Quantities that every scene allocates."""
 
 
 class Particles:
-    """Fields of the particle quantities [SI units] that a scene needs.
+    """Fields of the particle quantities that a scene needs.
 
-    x, v: position and velocity; C: affine velocity [1/s]; j = det F - 1; tau: Kirchhoff stress [Pa]; mass; body: index
-    of the body; origin: coordinates of the grid block that held the particle when blocks were last built. Parts of the
-    physics hold more: b_minus_I, left Cauchy-Green tensor of the isochoric elastic strain minus I; E, energy [J/kg];
-    damage_root, cube root of damage; acceleration, gravity held at present. A quantity that no part requires is
-    zero: it is read as zeros, and nothing else can be written to it.
+    Laws and gravity allocate what they store by `require`. A quantity without a field is zero: it is read as zeros, and
+    nothing else can be written to it.
 
-    On the device particles lie in the order of the last `sort`, so that those of a block are read in one go. `index`
-    holds their numbers in the scene, which never change and by which `read` and `write` know them.
+    On the device particles lie in the order of the last `sort`, so that those of a block are contiguous in memory. The
+    order of the arrays that `read` returns and `write` takes is that of the scene and never changes.
 
     Args:
         count: number of particles.
+
+    Attributes:
+        x, v: position [m] and velocity [m/s].
+        C: affine velocity matrix [1/s].
+        j: J - 1 [-], with J = det F = rho0/rho.
+        tau: Kirchhoff stress J sigma [Pa], six components.
+        mass: mass [kg].
+        body: index of the body.
+        origin: coordinates of the grid block that owned the particle when blocks were last built.
+        b_minus_I: b - I [-], six components, with the isochoric left Cauchy-Green tensor b of the elastic strain.
+        E: specific internal energy [J/kg].
+        damage_root: cube root of the damage [-].
+        acceleration: by self-gravity [m/s^2].
+        index: number in the scene of the particle at each index of the device.
+        order: the same on the host, shape [particle_count].
     """
 
     x: ti.Field
@@ -63,8 +77,8 @@ class Particles:
         for name in CORE_FIELDS:
             self.require(name)
 
-    def require(self, name: str) -> Any:
-        """The field of a quantity, made when it is first asked for."""
+    def require(self, name: str) -> ti.Field:
+        """Return the field of a quantity, allocated when it is first asked for."""
         if name not in self.allocated:
             kind, shape = FIELD_TYPES[name], capacity(self.count)
             setattr(self, name, kind.field(shape=shape) if hasattr(kind, "field") else ti.field(kind, shape))
@@ -72,18 +86,21 @@ class Particles:
 
     @property
     def allocated(self) -> tuple[str, ...]:
-        """Names of the quantities that have a field: what a checkpoint holds."""
+        """Names of the quantities that have a field."""
         return tuple(name for name in FIELD_TYPES if name in vars(self))
 
     def read(self, *names: str) -> Arrays:
-        """Copies of the named quantities in double precision, of all when none is named; first axis the particle."""
+        """Return copies of the named quantities, of all when none is named, shape [particle_count, ...]."""
         return {name: self._values(name) for name in names or FIELD_TYPES}
 
     def write(self, arrays: Arrays) -> None:
-        """Overwrite the named quantities.
+        """Overwrite quantities of all particles.
+
+        Args:
+            arrays: by name, shape [particle_count, ...].
 
         Raises:
-            ValueError: a quantity that no part holds would not be zero.
+            ValueError: a quantity without a field would not be zero.
         """
         for name, values in arrays.items():
             if name in self.allocated:
@@ -91,18 +108,18 @@ class Particles:
             elif np.any(values):
                 raise ValueError(f"no part of the scene holds '{name}': it can only be zero")
 
-    def sort(self, order: NDArray[np.integer[Any]]) -> None:
+    def sort(self, order: Indices) -> None:
         """Move all particles on the device.
 
         Args:
-            order: number of the particle that each place receives, shape [particle_count].
+            order: number in the scene of the particle that each index of the device receives, shape [particle_count].
         """
         source = np.argsort(self.order)[order]
         for field in (getattr(self, name) for name in self.allocated):
             overwrite(field, field.to_numpy()[source])
         self._number(order)
 
-    def _number(self, order: NDArray[np.integer[Any]]) -> None:
+    def _number(self, order: Indices) -> None:
         self.order = order
         overwrite(self.index, order)
 

@@ -15,11 +15,11 @@ from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import Tillotson
 from engine.laws.viscosity import Inviscid
-from engine.scene.material import Material
+from engine.scene.material import Material, named
 from engine.state.particles import Particles
 from engine.verification.harness import Array
 
-BASALT = Material()
+BASALT = named("basalt")
 
 HOST_REAL = to_numpy_type(Real)
 """NumPy's type of the precision of this process."""
@@ -66,7 +66,6 @@ class MaterialPoint:
             Hencky(self.particles, Strength(materials) if strength else Unlimited(), materials) if shear else Fluid(),
             Damage(self.particles, fracture or Unbreakable()),
             viscosity or Inviscid(),
-            materials,
         )
         self.wave_speed = np.zeros(count, HOST_REAL)
 

@@ -80,7 +80,7 @@ def write_table(path: Path, results: Sequence[Result], order: Sequence[str]) -> 
     """
     rows = _frame(results)
     if path.is_file():
-        former = pd.read_csv(path, float_precision="round_trip")
+        former = pd.read_csv(path, dtype=str, keep_default_na=False)
         kept = former[~former["scene"].isin([result.name for result in results])]
         rows = pd.concat([kept, rows]) if len(rows) else kept
     if len(rows):

@@ -98,9 +98,9 @@ def variant(whole: Simulation, changes: Results) -> Simulation:
     """The scene with other physics, in the state of the whole one as far as its parts hold it."""
     physics = whole.scene.physics.model_copy(update=changes)
     result = Simulation(whole.scene.model_copy(update={"physics": physics}))
-    result.particles.write(whole.particles.read(*result.particles.allocated))
-    result.use_stored_blocks()
-    result.clock.rate[None], result.clock.time[None] = whole.clock.rate[None], whole.time
+    now = whole.clock_state()
+    clock_state = {**result.clock_state(), "rate": now["rate"], "time": now["time"]}
+    result.restore(whole.particles.read(*result.particles.allocated), clock_state)
     result.clock.pause_time[None] = whole.scene.end_time
     return result
 

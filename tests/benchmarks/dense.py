@@ -57,7 +57,7 @@ class DenseTransfer:
             base, f = self.locate(p)
             weights = spline_weights(f)
             mass = self.particles.mass[p]
-            volume = mass / self.constitution.table[self.particles.body[p]].rho0
+            volume = mass / self.constitution.rho0(p)
             stress = (4.0 * dt * volume / (self.dx * self.dx)) * unpack(self.particles.tau[p])
             affine = mass * self.particles.C[p] - stress
             momentum = mass * (self.particles.v[p] + dt * self.gravity.at(p))

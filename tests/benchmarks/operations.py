@@ -9,7 +9,7 @@ OPERATIONS = {
     "grid_to_particles": 9 * 64 + 3 * 32 + 80,
     # (I + dt L)^-1, products and symmetric parts, det(I + dt L) - 1 and two norms
     "affine_velocity": 215,
-    # det(I + A) - 1 and two products of 3x3 matrices
+    # det(I + H) - 1 and two products of 3x3 matrices
     "deform": 150,
     # an inverse, two products, 8 terms of the series
     "half_log": 200,

@@ -37,11 +37,11 @@ class StretchConstitution(Constitution):
     def update(self, p, L, dt):
         """Advance strain, energy, damage and stress of particle p over one step of velocity gradient L."""
         body = self.particles.body[p]
-        m = self.table[body]
+        rho0 = self.eos.rho0(body)
         F = (identity() + dt * L) @ self.F[p]
         J = F.determinant()
         strain = strain_increment(dt * L)
-        half_work = 0.5 / m.rho0 * ddot(unpack(self.particles.tau[p]), strain)
+        half_work = 0.5 / rho0 * ddot(unpack(self.particles.tau[p]), strain)
         E = self.energy.after(p, 2.0 * half_work)
         P, c2 = self.eos.evaluate(p, 1.0 / J - 1.0, E, body)
         if P < 0.0:
@@ -49,7 +49,7 @@ class StretchConstitution(Constitution):
         F, s, largest = self.shear_part(F, J, P, E, p)
         tau = s - J * P * identity()
         self.F[p], self.particles.j[p], self.particles.tau[p] = F, J - 1.0, pack(tau)
-        self.energy.add(p, half_work + 0.5 / m.rho0 * ddot(tau, strain))
+        self.energy.add(p, half_work + 0.5 / rho0 * ddot(tau, strain))
         self.damage.damage_root[p] = self.grow(largest / J - P, dt, p)
         return self.wave_speed(c2, body), 0.0
 

@@ -11,7 +11,10 @@ HEAD = 'name = "small"\n'
 
 BAD_STUDIES = {
     "misspelt key of the study": (HEAD + "descripton = 'x'\n" + GRID, ["descripton", "did you mean 'description'"]),
-    "misspelt setting": (HEAD + "[collision]\nraduis = 1e4\n" + GRID, ["collision", "raduis", "did you mean 'radius'"]),
+    "misspelt setting": (
+        HEAD + "[collision]\ntarget.raduis = 1e4\n" + GRID,
+        ["collision", "target.raduis", "mean 'radius'"],
+    ),
     "misspelt nested setting": (
         HEAD + "[collision.numerics]\nclf = 0.3\n" + GRID,
         ["numerics.clf", "did you mean 'cfl'"],
@@ -25,8 +28,36 @@ BAD_STUDIES = {
         HEAD + "[axes]\nvelocity = [1]\nangle = [5]\ncfl = [0.1]\n",
         ["unknown key 'axes.cfl'", "did you mean 'numerics.cfl'"],
     ),
+    "old setting": (HEAD + "[collision]\nradius = 1e4\n" + GRID, ["collision: 'radius' is now 'target.radius'"]),
+    "old axis": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nmaterial.damaged_friction = [0.5]\n",
+        ["'axes.material.damaged_friction' is now 'axes.materials.basalt.friction'"],
+    ),
+    "old key of a case": (
+        HEAD + GRID + "[[cases]]\nprojectile_radius = 1e4\n",
+        ["case 1: 'projectile_radius' is now 'projectile.radius'"],
+    ),
+    "material that lacks constants": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nprojectile.material = ['basalt', 'ice']\n",
+        ["'materials.ice' lacks cohesion", "which strength needs: give them"],
+    ),
+    "misspelt material": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\ntarget.material = ['basalt', 'icee']\n",
+        ["'target.material': unknown material 'icee'", "did you mean 'ice'"],
+    ),
+    "materials as axis": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nmaterials.basalt.eos = [1]\n",
+        ["'axes.materials.basalt.eos' is a table", "materials.basalt.eos.A"],
+    ),
+    "misspelt constant as axis": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nmaterials.basalt.frictoin = [1]\n",
+        ["unknown key 'axes.materials.basalt.frictoin'", "did you mean 'materials.NAME.friction'"],
+    ),
     "switch as velocity": (HEAD + "[axes]\nvelocity = [true]\nangle = [5]\n", ["'velocity'", "not true or false"]),
-    "negative radius": (HEAD + "[collision]\nradius = -5.0\n" + GRID, ["'radius'", "greater than 0", "-5.0"]),
+    "negative radius": (
+        HEAD + "[collision]\ntarget.radius = -5.0\n" + GRID,
+        ["'target.radius'", "greater than 0", "-5.0"],
+    ),
     "steep angle": (HEAD + "[axes]\nvelocity = [100]\nangle = [95]\n", ["'angle'", "90", "95"]),
     "negative angle": (HEAD + "[axes]\nvelocity = [100]\nangle = [-1]\n", ["'angle'", "0", "-1"]),
     "no velocity": (HEAD + "[axes]\nvelocity = [0]\nangle = [5]\n", ["'velocity'", "greater than 0"]),
@@ -59,7 +90,7 @@ BAD_STUDIES = {
         ["velocity", "number, not text", "'100'"],
     ),
     "axis without effect": (
-        HEAD + "[collision]\nfriction = 0.5\n[collision.fracture]\n"
+        HEAD + "[collision]\nmaterials.basalt.friction = 0.5\n[collision.fracture]\n"
         "flaws = 'covered'\nstrain = 'young'\ngrowth_speed = 0.4\nper_flaw = true\n"
         "[axes]\nvelocity = [100]\nangle = [5]\nparameter_set = ['talk', 'sugiura2018']\n",
         ["talk", "sugiura2018", "same simulation"],
@@ -68,11 +99,11 @@ BAD_STUDIES = {
     "lists as values": (HEAD + "[axes]\nvelocity = [[100]]\nangle = [5]\n", ["axes.velocity", "single values"]),
     "case off the axes": (HEAD + GRID + "[[cases]]\nangle = 7\n", ["case 1", "'angle' is 7", "axes.angle"]),
     "case without effect beside axes": (
-        HEAD + GRID + "[[cases]]\n[[cases]]\nradius = 5e4\n",
-        ["case base, velocity 100.0", "case radius50000, velocity 100.0", "same simulation"],
+        HEAD + GRID + "[[cases]]\n[[cases]]\ntarget.radius = 5e4\n",
+        ["case base, velocity 100.0", "case target.radius50000, velocity 100.0", "same simulation"],
     ),
     "cases of the same name": (
-        HEAD + GRID + "[[cases]]\nname = 'a'\n[[cases]]\nname = 'a'\nradius = 1e4\n",
+        HEAD + GRID + "[[cases]]\nname = 'a'\n[[cases]]\nname = 'a'\ntarget.radius = 1e4\n",
         ["case a, velocity 100.0", "same place", "different names"],
     ),
     "name of a case that leaves the directory": (HEAD + GRID + "[[cases]]\nname = '../up'\n", ["name", "../up"]),
@@ -118,7 +149,7 @@ def test_bad_study(verb, text, expected, command, write_study, runs):
 
 
 def test_every_mistake_is_named_once(command, write_study):
-    result = command("run", write_study(HEAD + "[collision]\nradius = -1\nparticles = 0\n" + GRID))
+    result = command("run", write_study(HEAD + "[collision]\ntarget.radius = -1\nparticles = 0\n" + GRID))
     assert len(result.err.splitlines()) == 2
 
 
@@ -162,16 +193,16 @@ def test_foreign_directory(key, value, expected, command, write_study, runs, tre
 def test_other_settings(command, write_study, runs, tree):
     command("run", write_study())
     before = tree(runs)
-    result = command("run", write_study(collision="radius = 1e4"))
+    result = command("run", write_study(collision="target.radius = 1e4"))
     assert result.code == 2
-    assert "radius 50000.0 there and 10000.0 in the study" in result.err
+    assert "target.radius 50000.0 there and 10000.0 in the study" in result.err
     assert "RUNS=" in result.err
     assert tree(runs) == before
 
 
 def test_same_settings_in_other_words(command, write_study):
     command("run", write_study())
-    assert command("plan", write_study(collision="radius = 50_000\nseed = 1")).code == 0
+    assert command("plan", write_study(collision="target.radius = 50_000\nseed = 1")).code == 0
 
 
 def test_directory_with_other_things(command, write_study, runs, tree):

@@ -63,12 +63,12 @@ def test_campaign_survives_its_file(velocities, angles):
 
 
 def test_order_of_further_axes_has_no_meaning():
-    axes = {"seed": [1, 2], "friction": [0.5], "viscosity.shear": [0.0, 1e5]}
+    axes = {"seed": [1, 2], "materials.basalt.friction": [0.5], "viscosity.shear": [0.0, 1e5]}
     found = [
         grid(velocity=[100], angle=[5], **{key: axes[key] for key in order}) for order in permutations(sorted(axes))
     ]
     assert all(campaign.jobs == found[0].jobs for campaign in found)
-    assert found[0].dims == ("velocity", "angle", "friction", "seed", "viscosity.shear")
+    assert found[0].dims == ("velocity", "angle", "materials.basalt.friction", "seed", "viscosity.shear")
 
 
 def test_axes_can_be_nested_tables():
@@ -77,13 +77,49 @@ def test_axes_can_be_nested_tables():
     assert nested.jobs == grid(**{"velocity": [1], "angle": [5], "viscosity.shear": [1e3]}).jobs
 
 
+def test_materials_spins_and_their_constants_are_axes():
+    ice = {"cohesion": 1e6, "intact_friction": 1.0, "melt_energy": 7e5, "friction": 0.6}
+    axes = {
+        "velocity": [100],
+        "angle": [5],
+        "projectile.material": ["basalt", "ice"],
+        "target.spin_period": [False, 4, 8],
+        "materials.basalt.friction": [0.5, 0.7],
+    }
+    study = Study(name="n", collision={"materials": {"ice": ice}}, axes=axes)
+    campaign = expand(study, "test")
+    assert campaign.dims == (
+        "velocity",
+        "angle",
+        "materials.basalt.friction",
+        "projectile.material",
+        "target.spin_period",
+    )
+    assert campaign.coords["target.spin_period"] == (None, 4.0, 8.0)
+    assert len({job.id for job in campaign.jobs}) == 12
+    last = campaign.jobs[-1]
+    assert last.id.startswith("v0100_a05_materials.basalt.friction0.7_projectile.material-i")
+    target, projectile = last.collision.scene().bodies
+    assert (target.material.friction, projectile.material.friction) == (0.7, 0.6)
+    assert target.spin[2] == pytest.approx(2.0 * 3.141592653589793 / (8.0 * 3600.0), rel=1e-9)
+    assert validate(Campaign, campaign.content(), "test") == campaign
+
+
+def test_a_constant_that_an_axis_gives_needs_no_shared_value():
+    ice = {"cohesion": 1e6, "intact_friction": 1.0, "melt_energy": 7e5}
+    shared = {"target": {"material": "ice"}, "materials": {"ice": ice}}
+    axes = {"velocity": [100], "angle": [5], "materials.ice.friction": [0.5, 0.6]}
+    jobs = expand(Study(name="n", collision=shared, axes=axes), "test").jobs
+    assert [job.collision.scene().bodies[1].material.friction for job in jobs] == [0.5, 0.6]
+
+
 def test_axes_and_cases_give_the_same_job():
-    (from_axes,) = grid(velocity=[100], angle=[5], friction=[0.5]).jobs
+    (from_axes,) = grid(velocity=[100], angle=[5], sound_speed=[0.5]).jobs
     (from_case,) = expand(
-        Study(name="n", collision={"angle": 5}, cases=[{"friction": 0.5, "velocity": 100, "angle": 5.0}]), "test"
+        Study(name="n", collision={"angle": 5}, cases=[{"sound_speed": 0.5, "velocity": 100, "angle": 5.0}]), "test"
     ).jobs
     assert from_axes.id == from_case.id
-    assert from_case.index == {"case": "v0100_a05_friction0.5"}
+    assert from_case.index == {"case": "v0100_a05_sound_speed0.5"}
 
 
 def test_case_names_do_not_depend_on_other_cases():
@@ -180,11 +216,11 @@ def test_talk_cases_end_at_their_own_times():
 
 def test_keys_lead_to_every_single_value():
     collision = Collision(velocity=1, angle=1, viscosity={}, fracture={})
-    other_form = {"material.eos.K", "material.eos.n"}
+    other_form = {"materials.NAME.eos.K", "materials.NAME.eos.n"}
     assert other_form <= set(scalar_keys(Collision))
     for key in set(scalar_keys(Collision)) - other_form:
-        assert not isinstance(value_at(collision, key), dict)
-    assert {"velocity", "viscosity.shear", "material.eos.A"} <= set(scalar_keys(Collision))
+        assert not isinstance(value_at(collision, key.replace("NAME", "basalt")), dict)
+    assert {"velocity", "viscosity.shear", "materials.NAME.eos.A"} <= set(scalar_keys(Collision))
     assert "viscosity" not in set(scalar_keys(Collision))
 
 

@@ -21,7 +21,7 @@ HASH = "0123456789abcdef"
         ({"velocity": 62.5, "angle": 7.25}, "v0062.5_a07.25"),
         ({"velocity": 12000.0, "seed": 3}, "v12000_seed3"),
         ({"viscosity.shear": 1e5}, "viscosity.shear100000"),
-        ({"material.weibull_k": 4e35}, "material.weibull_k4e35"),
+        ({"materials.basalt.weibull_k": 4e35}, "materials.basalt.weibull_k4e35"),
         ({"parameter_set": "talk"}, "parameter_set-talk"),
         ({"fracture.per_flaw": True}, "fracture.per_flaw-true"),
         ({}, "base"),

@@ -48,7 +48,7 @@ def test_campaign_file_follows_the_contract(command, write_study, runs):
     assert set(first) == {"id", "directory", "index", "collision"}
     assert first["directory"] == f"jobs/{first['id']}"
     assert first["index"] == {"velocity": 100.0, "angle": 5.0}
-    assert first["collision"]["material"]["rho0"] == 2700.0
+    assert first["collision"]["materials"]["basalt"]["rho0"] == 2700.0
 
 
 def test_finished_jobs_are_never_touched(command, write_study, runs, tree: Tree):
@@ -76,8 +76,8 @@ def test_new_axis_keeps_finished_jobs(command, write_study, runs):
 
 
 def test_a_setting_that_becomes_an_axis_keeps_finished_jobs(command, write_study, runs):
-    command("run", write_study(collision="radius = 1e4"))
-    assert command("run", write_study(angle="[5]\nradius = [1e4, 2e4]")).code == 0
+    command("run", write_study(collision="target.radius = 1e4"))
+    assert command("run", write_study(angle="[5]\ntarget.radius = [1e4, 2e4]")).code == 0
     assert starts(runs, "v0100_a05") == ["from step 0"]
     assert len(list(runs.glob("small/jobs/*"))) == 4
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.report.figures.style import Directories
+from campaigns.dotted_keys import nest
 from engine.scene.collision import Collision
 from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
@@ -13,9 +13,8 @@ Coordinates = dict[str, list[Any]]
 
 
 def collision(**settings: Any) -> Collision:
-    """A collision at 200 m/s and 15 deg, unless the settings say otherwise."""
-    nested = {"viscosity": {"shear": settings.pop("viscosity.shear")}} if "viscosity.shear" in settings else {}
-    return Collision(**{"velocity": 200.0, "angle": 15.0, "particles": 200, "end_time": 1000.0, **nested, **settings})
+    """A collision at 200 m/s and 15 deg, unless the settings, by dotted key, say otherwise."""
+    return Collision(**nest({"velocity": 200.0, "angle": 15.0, "particles": 200, "end_time": 1000.0, **settings}))
 
 
 def campaign(directory: Path, coords: Coordinates, cells: list[dict[str, Any]], done: int) -> Path:
@@ -31,8 +30,3 @@ def grid(coords: Coordinates) -> list[dict[str, Any]]:
     """All combinations of some coordinates."""
     frame = pd.MultiIndex.from_product(list(coords.values()), names=list(coords)).to_frame(index=False)
     return [{str(key): value for key, value in row.items()} for row in frame.to_dict("records")]
-
-
-def job_directories(campaign_directory: Path, count: int) -> Directories:
-    """Directory of each of the first `count` jobs, by its id."""
-    return {str(number): campaign_directory / f"jobs/{number}" for number in range(count)}

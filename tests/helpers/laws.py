@@ -11,7 +11,7 @@ TESTS = Path(__file__).parents[1] / "engine"
 
 LAWS = {
     "tensors": "logarithms, eigenvalues",
-    "deform": "deformation",
+    "shear": "deformation",
     "tillotson": "Tillotson pressure",
     "algebraic": "Murnaghan pressure",
     "strength": "strength",
@@ -19,7 +19,8 @@ LAWS = {
     "viscosity": "viscosity",
     "constitution": "all laws of a particle",
     "bar": "bar of breaking particles",
-    "self_gravity": "sum over pairs",
+    "direct_sum": "sum over pairs",
+    "self_gravity": "gravity of a sphere",
     "transfer": "whole step",
 }
 """Test modules of the laws, in the order of engine/physics.md."""
@@ -35,7 +36,7 @@ def row(test: str, inputs: int, error: float) -> str:
 def main() -> int:
     """Run the laws' tests and print the table; the exit code is that of the tests."""
     code = pytest.main([str(next(TESTS.rglob(f"test_{law}.py"))) for law in LAWS])
-    print("\n| law | what holds | inputs | largest error |\n|---|---|---|---|")
+    print("\n| law | what is tested | inputs | largest error |\n|---|---|---|---|")
     for test, (inputs, error) in COMPARED.items():
         print(row(test, inputs, error))
     return int(code)

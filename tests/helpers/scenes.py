@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from engine.scene.scene import Scene
+from engine.scene.bodies import Box
+from engine.scene.scene import Numerics, Physics, Scene
 from engine.simulation.simulation import Simulation
 from tests.helpers.device import Array
 
@@ -26,6 +27,19 @@ def rubble_collision(**changes: Any) -> Scene:
     target = body(position=(-40e3, 3e3, 0.0), velocity=(100.0, 0.0, 5.0), spin=(0.0, 1e-4, 3e-4))
     projectile = body(radius=40e3, particles=60, position=(52e3, 20e3, 5e3), velocity=(-200.0, 0.0, 0.0))
     return scene(target, projectile, **changes)
+
+
+def box_scene(velocity: tuple[float, float, float] = (0.0, 0.0, 0.0), **physics: object) -> Scene:
+    """A block of 8 x 4 x 4 cells of 1 m, periodic along x, one particle a cell."""
+    body = Box(size=(8.0, 4.0, 4.0), lattice=(8, 4, 4), position=(4.0, 2.0, 2.0), velocity=velocity)
+    parts = Physics.model_validate({"strength": False, "fracture": None, "gravity": None, **physics})
+    return Scene(
+        bodies=(body,),
+        period=(8.0, None, None),
+        end_time=0.02,
+        physics=parts,
+        numerics=Numerics(particles_per_cell=1.0),
+    )
 
 
 def started(given: Scene, **state: Array) -> Simulation:

@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from analysis.remnant.outcome import Outcomes
 from analysis.report.figures.style import GREY, MARKERS, Colour, nothing_done, shades, styled
-from analysis.results.tables import cells, series
+from analysis.results.tables import points, series
 from engine.job.directory import JobState
 
 NAME = "shape_vs_angle"
@@ -59,8 +59,8 @@ def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
 
 
 def _lines(results: xr.Dataset) -> Iterator[tuple[str, tuple[Look, pd.DataFrame]]]:
-    """Label, look and cells of each line: colour and marker tell the velocity, or, where there is one, the series."""
-    groups, velocities = list(series(results)), cells(results)["velocity"].dropna().unique()
+    """Label, look and points of each line: colour and marker tell the velocity, or, where there is one, the series."""
+    groups, velocities = list(series(results)), points(results)["velocity"].dropna().unique()
     by_velocity = len(velocities) > 1
     colours = shades(velocities if by_velocity else range(len(groups)))
     markers = dict(zip(colours, cycle(MARKERS), strict=False))
@@ -78,5 +78,5 @@ def _line(axes: Axes, rows: pd.DataFrame, name: str, look: Look) -> None:
     bars = found["spread"].fillna(0.0)
     axes.errorbar(found.index, found["mean"], bars, capsize=2.5, elinewidth=0.9, markeredgewidth=1.2, **look)
     thin = found[found["thin"] > 0.0]
-    points = Look(color=look["color"], marker=look["marker"], linestyle="none")
-    axes.plot(thin.index, thin["mean"], markeredgewidth=1.2, markerfacecolor="white", zorder=5, **points)
+    hollow = Look(color=look["color"], marker=look["marker"], linestyle="none")
+    axes.plot(thin.index, thin["mean"], markeredgewidth=1.2, markerfacecolor="white", zorder=5, **hollow)

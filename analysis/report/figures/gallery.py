@@ -1,4 +1,4 @@
-"""The largest remnant of every cell, all at one scale."""
+"""The largest remnant of every point, all at one scale."""
 
 import numpy as np
 import pandas as pd
@@ -26,12 +26,12 @@ KEY = (
 )
 
 WRAP = 4
-"""Pictures in a row when the cells are no full grid of velocity and angle."""
+"""Pictures in a row when the points are no full grid of velocity and angle."""
 
 
 @styled
 def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
-    """One picture a cell at a common scale; of several seeds the first.
+    """One picture a point at a common scale; of several seeds the first.
 
     Args:
         results: the results of a campaign.
@@ -47,8 +47,8 @@ def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
     columns = _columns(shown)
     width = NARROW if columns > WRAP and not shown["series"].any() else WIDE
     figure, panels = _grid(len(shown), columns, width, frame)
-    for axes, (_, cell) in zip(panels, shown.iterrows(), strict=False):
-        _panel(axes, cell, views.get(cell["job"]), frame)
+    for axes, (_, point) in zip(panels, shown.iterrows(), strict=False):
+        _panel(axes, point, views.get(point["job"]), frame)
     _scale_bar(panels[-columns], 2.0 * frame.width)
     return figure
 
@@ -73,15 +73,15 @@ def _grid(count: int, columns: int, width: float, frame: Frame) -> tuple[Figure,
     return figure, panels.ravel()
 
 
-def _panel(axes: Axes, cell: pd.Series, views: Views | None, frame: Frame) -> None:
-    axes.set_title(_caption(cell), fontsize=7.5, pad=3)
+def _panel(axes: Axes, point: pd.Series, views: Views | None, frame: Frame) -> None:
+    axes.set_title(_caption(point), fontsize=7.5, pad=3)
     if views is None:
-        _missing(axes, cell["state"])
+        _missing(axes, point["state"])
         return
     for found, centre in ((views.flat, 0.0), (views.edge, -frame.flat - frame.edge)):
         left, right, bottom, top = found.extent
-        place = (left, right, bottom + centre, top + centre)
-        axes.imshow(found.pixels, extent=place, origin="lower", interpolation="hanning")
+        extent = (left, right, bottom + centre, top + centre)
+        axes.imshow(found.pixels, extent=extent, origin="lower", interpolation="hanning")
     axes.set(xlim=(-frame.width, frame.width), ylim=(-frame.flat - 2.0 * frame.edge, frame.flat), aspect="auto")
 
 
@@ -91,11 +91,11 @@ def _missing(axes: Axes, state: str) -> None:
     axes.text(0.5, 0.5, state, ha="center", va="center", color=GREY, backgroundcolor="white", transform=whole)
 
 
-def _caption(cell: pd.Series) -> str:
-    place = f"{cell['velocity']:g} m/s, {cell['angle']:g}°" + (f", {cell['series']}" if cell["series"] else "")
-    if cell["state"] != JobState.DONE:
-        return place
-    return f"{place}\n$M$ {cell['mass_ratio']:.2f}   $b/a$ {cell['b_over_a']:.2f}   $c/a$ {cell['c_over_a']:.2f}"
+def _caption(point: pd.Series) -> str:
+    text = f"{point['velocity']:g} m/s, {point['angle']:g}°" + (f", {point['series']}" if point["series"] else "")
+    if point["state"] != JobState.DONE:
+        return text
+    return f"{text}\n$M$ {point['mass_ratio']:.2f}   $b/a$ {point['b_over_a']:.2f}   $c/a$ {point['c_over_a']:.2f}"
 
 
 def _scale_bar(axes: Axes, width: float) -> None:

@@ -27,7 +27,7 @@ PANELS = {
 
 @styled
 def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
-    """M_lr/M_target, b/a and c/a, one row of maps per series; means over seeds, missing cells with their state."""
+    """M_lr/M_target, b/a and c/a, one row of maps per series; means over seeds, missing points with their state."""
     groups = list(series(results))
     tallest, widest = (max(rows[name].nunique() for _, rows in groups) for name in ("velocity", "angle"))
     size = (3 * max(2.4, 0.42 * widest + 1.0), len(groups) * max(2.2, 0.36 * tallest + 1.0))
@@ -65,7 +65,7 @@ def _map(axes: Axes, table: pd.DataFrame, name: str, highest: float) -> None:
 
 
 def _missing(axes: Axes, column: int, row: int, state: object) -> None:
-    """A hatched cell with the state of its job; an empty one where the study has no job."""
+    """A hatched point with the state of its job; an empty one where the study has no job."""
     if not isinstance(state, str):
         return
     box = Rectangle(
@@ -77,5 +77,5 @@ def _missing(axes: Axes, column: int, row: int, state: object) -> None:
 
 
 def _least_done(states: pd.Series) -> str:
-    """The first state that is not done, since a cell without a number has none done."""
+    """The first state that is not done, since a point without a number has none done."""
     return next((str(state) for state in states if state != JobState.DONE), JobState.DONE)

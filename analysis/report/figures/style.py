@@ -86,7 +86,7 @@ def shades(levels: Iterable[float]) -> dict[float, Colour]:
 
 @styled
 def nothing_done() -> Figure:
-    """A figure that says why it shows nothing."""
+    """A figure that shows only why it is empty."""
     figure = Figure(figsize=(6.0, 2.0))
     axes = figure.subplots()
     axes.set(xticks=[], yticks=[])

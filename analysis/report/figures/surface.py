@@ -58,14 +58,14 @@ def picture(view: Array, body: NDArray[np.int64], spacing: float, pixel: float) 
 
 
 def _nearest(
-    view: Array, place: Array, radius: float, pixel: float, shape: tuple[int, int]
+    view: Array, position: Array, radius: float, pixel: float, shape: tuple[int, int]
 ) -> tuple[Array, NDArray[np.int64]]:
     """Depth [m] of the surface and the particle it belongs to, -1 for none, for each pixel."""
     depth, nearest = np.full(shape, -np.inf), np.full(shape, -1)
     reach = int(np.ceil(radius / pixel))
     for right, up in np.ndindex(2 * reach + 1, 2 * reach + 1):
-        column, row = np.floor(place + np.array([right - reach, up - reach])).astype(int).T
-        offset = (np.stack([column, row], axis=1) + 0.5 - place) * pixel
+        column, row = np.floor(position + np.array([right - reach, up - reach])).astype(int).T
+        offset = (np.stack([column, row], axis=1) + 0.5 - position) * pixel
         below = radius**2 - np.sum(offset**2, axis=1)
         inside = np.flatnonzero(below > 0.0)
         row, column = row[inside], column[inside]

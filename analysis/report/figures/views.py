@@ -18,7 +18,12 @@ FINEST = 12.0
 
 @dataclass(frozen=True)
 class Views:
-    """A remnant seen along its shortest axis, and edge-on along its intermediate one; the longest axis to the right."""
+    """Pictures of a remnant, its longest axis to the right.
+
+    Attributes:
+        flat: seen along the shortest axis.
+        edge: seen along the intermediate axis.
+    """
 
     flat: Picture
     edge: Picture
@@ -26,7 +31,12 @@ class Views:
 
 @dataclass(frozen=True)
 class Frame:
-    """What holds any of the pictures: half the width, and half the height of each view [m]."""
+    """Size of a panel around any of the pictures.
+
+    Attributes:
+        width: half of its width [m].
+        flat, edge: half of the height of each view [m].
+    """
 
     width: float
     flat: float

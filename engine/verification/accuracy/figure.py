@@ -1,7 +1,5 @@
 """The figure of error against CPU time."""
 
-from pathlib import Path
-
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,12 +11,11 @@ from engine.verification.accuracy.settings import TRADEOFFS
 COLUMNS = 4
 
 
-def draw(runs: pd.DataFrame, path: Path) -> None:
-    """Write the figure as PNG: one panel a scene, one line a setting, and the Pareto front dashed.
+def draw(runs: pd.DataFrame) -> Figure:
+    """Draw a panel for each scene, with one line a setting and the Pareto front dashed.
 
     Args:
         runs: one row a run, with `scene`, `setting`, `value`, `error` and `cpu_time` [s].
-        path: the PNG to write.
     """
     scenes = [name for name in TRADEOFFS if (runs["scene"] == name).any()]
     rows = -(-len(scenes) // COLUMNS)
@@ -30,7 +27,7 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
         axes.set_axis_off()
     lines = {line.get_label(): line for axes in panels.flat for line in axes.get_lines()}
     figure.legend(lines.values(), lines.keys(), loc="outside lower center", ncols=COLUMNS)
-    figure.savefig(path, dpi=80)
+    return figure
 
 
 def _panel(axes: Axes, runs: pd.DataFrame, name: str) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.scene.material import Material
+from engine.scene.material import named
 from engine.verification.check import Problem
 from engine.verification.harness import Harness, Setting
 from engine.verification.problems.bar import Pull
@@ -65,7 +65,7 @@ def _relative(measured: float, exact: float) -> float:
 
 
 def _wave(harness: Harness, cells: int) -> float:
-    return _relative(StandingWave(cells).measure(harness).speed, Material().longitudinal_speed)
+    return _relative(StandingWave(cells).measure(harness).speed, named("basalt").longitudinal_speed)
 
 
 def _fall(harness: Harness, particles: int) -> float:

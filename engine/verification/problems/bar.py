@@ -35,12 +35,12 @@ class Pull:
 
     @property
     def body(self) -> Sphere:
-        """The bar, by its volume."""
+        """Sphere of the bar's volume and material."""
         return Sphere(radius=self.radius, particles=self.particles)
 
     @property
     def flaws(self) -> Flaws:
-        """The same flaws for both integrations."""
+        """Flaws, the same for both integrations."""
         return draw_flaws(self.body, FractureRules(), np.random.default_rng(1))
 
     @property
@@ -91,13 +91,13 @@ def _stress(e: float, D: Array, m: Material) -> Array:
     mu = np.expm1(-e)
     pressure = (1.0 - D) * m.eos.pressure(m.rho0, mu, 0.0)
     root_J2 = 2.0 * m.shear_modulus * np.exp(-e) * e / np.sqrt(3.0)
-    shear = np.minimum(root_J2, (1.0 - D) * m.cohesion)
+    shear = np.minimum(root_J2, (1.0 - D) * m.known("cohesion"))
     return np.asarray(2.0 / np.sqrt(3.0) * shear - pressure)
 
 
 @dataclass(frozen=True)
 class Bar:
-    """Peak stress over four decades of strain rate.
+    """Peak stress over four decades of strain rate, by the engine and by an independent integration of the same flaws.
 
     Attributes:
         rates: strain rates [1/s].
@@ -107,7 +107,7 @@ class Bar:
     rates: tuple[float, ...] = (0.01, 0.1, 1.0, 10.0, 100.0)
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Peak stress against the independent integration, and beside the continuum law."""
+        """Compare the peak stress with the independent integration; show it beside the continuum law."""
         checks = []
         for rate in self.rates:
             bar = Pull(rate)

@@ -51,7 +51,7 @@ class Cliff:
 
     @property
     def scene(self) -> Scene:
-        """Four particles a cell in the plane of the flow; wall and floor contain half a cell of it."""
+        """The column with four particles a cell in the plane of the flow; half a cell of it lies in wall and floor."""
         dx = WIDTH / self.cells
         shear = DENSITY * self.stiffness**2 * GRAVITY * self.height / 3.0
         body = Box(
@@ -71,7 +71,7 @@ class Cliff:
         )
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Height and front while it falls and at rest, against the experiments and Jutzi's SPH.
+        """Compare height and front, while it falls and at rest, with the experiments and Jutzi's SPH.
 
         Only the heights at rest can fail: fronts are single grains, and the codes and the experiments disagree at tau.
         """

@@ -71,7 +71,7 @@ class Collapse:
     particles: tuple[int, int] = (1000, 4000)
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Collapse time at the finest resolution and extrapolated to dx = 0, and its order in dx."""
+        """Compare the collapse time extrapolated to dx = 0 and the order of its error; show that of the finest run."""
         falls = [Fall(particles) for particles in self.particles]
         coarse, fine = (fall.measure(harness) for fall in falls)
         exact, sizes = falls[0].collapse_time, [fall.scene.dx for fall in falls]

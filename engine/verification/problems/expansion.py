@@ -1,4 +1,4 @@
-"""Free expansion of rubble, and its fall back to where it began (engine/physics.md, section 1)."""
+"""Free expansion of rubble, and its return to its start (engine/physics.md, section 1)."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ class Expansion:
         return Scene(bodies=(body,), end_time=1.0 / self.rate, physics=Physics(fracture=None, gravity=None))
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Size, J and stress at J = 8, and again at J = 1."""
+        """Compare positions, J and stress at J = 8, and again at J = 1."""
         start = initial_state(self.scene)["x"]
         flow = {"v": self.rate * start, "C": np.tile(self.rate * np.eye(3), (self.particles, 1, 1))}
         out = harness.run_until(harness.start(self.scene, **flow), self.scene.end_time)

@@ -7,15 +7,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from engine.scene.bodies import Box
-from engine.scene.material import Material
+from engine.scene.material import Material, named
 from engine.scene.murnaghan import MurnaghanParameters
 from engine.scene.scene import Numerics, Physics, Scene, ViscosityCoefficients
 from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check
 from engine.verification.harness import Array, Harness, State
 
-BASALT = Material()
-MURNAGHAN = Material(eos=MurnaghanParameters(K=2.67e10, n=4.0))
+BASALT = named("basalt")
+MURNAGHAN = named("basalt", eos=MurnaghanParameters(K=2.67e10, n=4.0))
 
 PLATEAU = (0.3, 0.8)
 """Where the state behind the front is measured, over its distance: off the heated plane and the front itself."""
@@ -82,7 +82,7 @@ class Impact:
 
     @property
     def scene(self) -> Scene:
-        """Until the front is through nine tenths of the slabs."""
+        """Both slabs, until the front has passed nine tenths of them."""
         across = 4.0 * self.dx
         body = Box(
             size=(2.0 * self.cells * self.dx, across, across),
@@ -133,7 +133,7 @@ class Hugoniot:
     name: str = "hugoniot"
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Us - c0 within 10 % for weak shocks; Us, P and rho/rho0 - 1 within 2 % and E within 5 % for strong ones."""
+        """Compare Us - c0 of weak shocks within 10 %; of strong ones Us, P, rho/rho0 - 1 within 2 %, E within 5 %."""
         shocks = [Shock(up, self.material) for up in self.speeds]
         runs = [Impact(up, self.cells, material=self.material).measure(harness) for up in self.speeds]
         return [check for shock, run in zip(shocks, runs, strict=True) for check in _compare(shock, run)]

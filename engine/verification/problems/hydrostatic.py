@@ -13,7 +13,7 @@ from engine.verification.harness import Array, Harness
 
 @dataclass(frozen=True)
 class Hydrostatic:
-    """A sphere alone, in balance from the start: it must stay at rest, keep its pressure, and not break.
+    """One sphere, in balance from the start: it stays at rest, keeps its pressure, and does not break.
 
     Attributes:
         particles: number of particles.
@@ -48,7 +48,7 @@ class Hydrostatic:
         return float(deviation), float(np.sqrt(np.mean(end.speed**2))), float(np.mean(end.damage > 0.0))
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Pressure, speed and damage after `end_time`."""
+        """Compare pressure, speed and damage at the end with those of a body at rest."""
         runs = [self.at_rest(harness, seed) for seed in self.seeds]
         deviation, motion, broken = map(max, zip(*runs, strict=True))
         centre = float(self.pressure(np.zeros(1))[0])

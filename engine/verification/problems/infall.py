@@ -27,13 +27,13 @@ class Infall:
 
     @property
     def collision(self) -> Collision:
-        """Equal bodies, cells of one particle so that they meet late."""
+        """The collision of equal bodies, with one particle a cell so that they share nodes late."""
         return Collision(
             velocity=200.0, angle=15.0, particles=self.particles, numerics=Numerics(particles_per_cell=1.0)
         )
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Speed at the start, and the speed and offset at contact that the end of the fall leads to."""
+        """Compare the speed at the start, and speed and angle at contact from the energy and momentum of the fall."""
         scene, body = self.collision.scene(), self.collision.bodies_at_contact()[0]
         contact, mu = 2.0 * body.radius, 2.0 * G_NEWTON * body.mass
         start = self.collision.approach()

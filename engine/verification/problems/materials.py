@@ -1,19 +1,18 @@
 """Materials of verification problems: simple limits of Tillotson's rock."""
 
-from engine.scene.material import Material
-from engine.scene.tillotson import TillotsonParameters
+from engine.scene.material import Material, named
 
 NEGLIGIBLE = 1e-12
 """Grueneisen constants so small that heat makes no pressure."""
 
 
 def elastic(rho0: float, bulk: float, shear: float, friction: float = 0.0) -> Material:
-    """Matter of constant moduli, P = K (rho/rho0 - 1), without cohesion.
+    """Return a material of constant moduli, P = K (rho/rho0 - 1), without thermal pressure.
 
     Args:
         rho0: density [kg/m^3].
         bulk, shear: moduli [Pa].
         friction: coefficient mu_d once damaged [-].
     """
-    cold = TillotsonParameters(a=NEGLIGIBLE, b=NEGLIGIBLE, A=bulk, B=0.0)
-    return Material(rho0=rho0, eos=cold, shear_modulus=shear, damaged_friction=friction)
+    cold = {"a": NEGLIGIBLE, "b": NEGLIGIBLE, "A": bulk, "B": 0.0}
+    return named("basalt", rho0=rho0, eos=cold, shear_modulus=shear, friction=friction)

@@ -28,14 +28,14 @@ class Rotation:
 
     @property
     def scene(self) -> Scene:
-        """One turn without gravity."""
+        """One turn of an intact sphere of R = 50 km without gravity."""
         spin = (self.rate / 3.0, 2.0 * self.rate / 3.0, 2.0 * self.rate / 3.0)
         body = Sphere(radius=50e3, particles=self.particles, spin=spin, hydrostatic=False)
         physics = Physics(strength=False, fracture=None, gravity=None)
         return Scene(bodies=(body,), end_time=2.0 * np.pi / self.rate, physics=physics)
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Angular momentum and energies after one turn."""
+        """Compare angular momentum and energies after one turn with those before."""
         scene = self.scene
         simulation = harness.start(scene)
         start = simulation.totals()

@@ -45,6 +45,6 @@ class Rubble:
         return float(before[2]), float(simulation.totals().angular_momentum[2])
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Change of the angular momentum, to round-off."""
+        """Compare the angular momentum with that before, to round-off."""
         before, after = self.drift(harness)
         return [Check("angular momentum", "kg m2/s", after, before, float(np.abs(after / before - 1.0)), 1e-12)]

@@ -31,7 +31,7 @@ class Runout:
     cells: int = 10
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Distance that the front has run at rest, beside both experiments."""
+        """Show the distance that the front has run at rest beside both experiments."""
         return [check for aspect in self.aspects for check in self._compare(harness, aspect)]
 
     def _compare(self, harness: Harness, aspect: float) -> list[Check]:

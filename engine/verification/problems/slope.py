@@ -121,7 +121,7 @@ class Layer:
 
 @dataclass(frozen=True)
 class Slide:
-    """How a layer slid.
+    """Motion of a sliding layer.
 
     Attributes:
         acceleration: of the plug [m/s^2].
@@ -136,7 +136,7 @@ class Slide:
 
 @dataclass(frozen=True)
 class Slope:
-    """Above the friction angle a slope slides as a block on a plane would; below it rests.
+    """Above the friction angle a slope slides as a block on a plane does; below it rests.
 
     Friction grows with depth as weight does, so all depths yield at once, and only the transfer's damping of short
     waves decides how deep the layer shears: dv/dt = a - kappa d4v/dz4, kappa = dx^4/(42 dt) (engine/physics.md,
@@ -160,7 +160,7 @@ class Slope:
     cells: tuple[int, int] = (32, 64)
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Acceleration above the friction angle, as measured and without the transfer's damping, and rest below it."""
+        """Compare the acceleration above the friction angle, measured and extrapolated to dx = 0, and rest below it."""
         friction = float(np.tan(np.deg2rad(self.friction_angle)))
         coarse, fine = (Layer(float(np.deg2rad(self.steep)), friction, cells) for cells in self.cells)
         rest = Layer(float(np.deg2rad(self.gentle)), friction, self.cells[0]).slide(harness).acceleration

@@ -1,4 +1,4 @@
-"""Whether a granular flow depends on the speed of sound it is given (engine/physics.md, sections 4 and 11)."""
+"""Independence of a granular flow from its speed of sound (engine/physics.md, sections 4 and 11)."""
 
 from dataclasses import dataclass, replace
 from math import inf
@@ -15,7 +15,7 @@ SCATTER = 0.05
 
 @dataclass(frozen=True)
 class Stiffness:
-    """The cliff with c_l = 20 sqrt(g H0) and with twice that; rock is stiffer by far, and a step for it shorter.
+    """The cliff with c_l = 20 sqrt(g H0) and with twice that; real rock is far stiffer, and would need shorter steps.
 
     A doubled speed halves the time step, and the transfer damps by the step (engine/physics.md, section 1). So the
     stiff cliff is compared with the soft one at the same cfl, and at the same step, where stiffness alone differs.
@@ -30,7 +30,7 @@ class Stiffness:
     cfl: float = 0.5
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Change of the profile, within the scatter of disturbed particles, and of the front, which is shown only."""
+        """Compare profiles within the scatter of disturbed particles; show the fronts."""
         soft = Cliff(self.cells, cfl=self.cfl)
         stiff = replace(soft, stiffness=2.0 * soft.stiffness)
         after, before = stiff.run(harness), soft.run(harness)

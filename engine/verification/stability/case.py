@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.scene.bodies import Sphere
 from engine.scene.collision import Collision
-from engine.scene.material import Material
+from engine.scene.material import Material, named
 from engine.scene.scene import Physics, Scene
 from engine.state.particles import Arrays
 from engine.verification.harness import altered
@@ -23,7 +23,7 @@ ROWS = 40
 
 
 def as_it_is(scene: Scene) -> Arrays:
-    """No change of the initial state."""
+    """Change nothing in the initial state."""
     return {}
 
 
@@ -59,7 +59,7 @@ def impact(
         keys: other keys of the collision.
     """
     end_time = fraction * min(8.0 * radius / velocity, 2000.0)
-    own = {"velocity": velocity, "angle": angle, "radius": radius, "end_time": end_time}
+    own = {"velocity": velocity, "angle": angle, "target": {"radius": radius}, "end_time": end_time}
     return with_rows(Collision.model_validate({"particles": PARTICLES, "start_separation": 1.1, **own, **keys}).scene())
 
 
@@ -94,7 +94,7 @@ def in_single_precision(scene: Scene) -> Scene:
 
 def stiffened(factor: float) -> Material:
     """Return basalt with its elastic moduli times a factor."""
-    return Material().slowed(factor**0.5)
+    return named("basalt").slowed(factor**0.5)
 
 
 def with_materials(scene: Scene, *materials: Material) -> Scene:

@@ -1,6 +1,5 @@
 """The figure of all cases: groups as rows, their cases within, coloured by how they ended."""
 
-from pathlib import Path
 from textwrap import fill
 
 import numpy as np
@@ -23,12 +22,11 @@ COLORS = {"stopped": "tab:orange", "failed": "tab:red", "energy not known": "0.8
 MAP, LOSS = colormaps["YlGnBu"], Normalize(0.0, 1.0)
 
 
-def draw(cases: pd.DataFrame, path: Path) -> None:
-    """Write the figure as PNG: a stable case is coloured by its dissipation, others by their verdict.
+def draw(cases: pd.DataFrame) -> Figure:
+    """Draw a rectangle for each case: a stable one is coloured by its dissipation, others by their verdict.
 
     Args:
         cases: one row a case, with `group`, `name`, `verdict` and `dissipation`.
-        path: the PNG to write.
     """
     groups = list(cases["group"].unique())
     columns = int(cases.groupby("group").size().max())
@@ -44,11 +42,16 @@ def draw(cases: pd.DataFrame, path: Path) -> None:
     axes.set_yticks(np.arange(len(groups)) + 0.5, groups)
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
+    _legends(figure, axes)
+    return figure
+
+
+def _legends(figure: Figure, axes: Axes) -> None:
+    """The scale of dissipation, and the colours of the verdicts."""
     label = "stable: energy lost from start to end, over the sum of all energies"
     figure.colorbar(ScalarMappable(LOSS, MAP), ax=axes, label=label, aspect=40, pad=0.01)
     patches = [Patch(color=color, label=name) for name, color in COLORS.items()]
     axes.legend(handles=patches, loc="lower right", ncols=len(patches))
-    figure.savefig(path, dpi=80)
 
 
 def _rectangle(axes: Axes, corner: tuple[int, int], name: str, color: tuple[float, float, float]) -> None:

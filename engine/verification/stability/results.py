@@ -75,4 +75,4 @@ def write(directory: Path, results: xr.Dataset) -> None:
     """Write stability.nc, stability.csv and stability.png."""
     write_dataset(directory / "stability.nc", results)
     cases(results).to_csv(directory / "stability.csv", index=False, float_format="%.4g")
-    draw(cases(results), directory / "stability.png")
+    draw(cases(results)).savefig(directory / "stability.png", dpi=80)

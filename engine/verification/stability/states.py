@@ -11,7 +11,12 @@ from engine.verification.stability.case import Changes
 
 
 def strained(eta: float, damage: float = 0.0) -> Changes:
-    """Condensed rock at rest at rho/rho0 = eta, with its stress and cold energy, at most that of evaporation."""
+    """Strain rock uniformly: stress and cold energy at a density, the energy at most that of evaporation.
+
+    Args:
+        eta: rho/rho0 [-].
+        damage: D of the scene, which reduces tension [-].
+    """
 
     def changes(scene: Scene) -> Arrays:
         material = scene.materials[0]
@@ -30,7 +35,7 @@ def strained(eta: float, damage: float = 0.0) -> Changes:
 
 
 def expanding(rate: float) -> Changes:
-    """Velocity H r; a negative H flows together."""
+    """Set the velocity to H r; H [1/s] is negative for a flow towards the centre."""
 
     def changes(scene: Scene) -> Arrays:
         x = initial_state(scene)["x"]
@@ -40,7 +45,7 @@ def expanding(rate: float) -> Changes:
 
 
 def coincident(points: int) -> Changes:
-    """All particles of all bodies at a few points."""
+    """Move all particles of all bodies to a few points."""
 
     def changes(scene: Scene) -> Arrays:
         x = initial_state(scene)["x"]
@@ -50,14 +55,14 @@ def coincident(points: int) -> Changes:
 
 
 def barely_touching(scene: Scene) -> Arrays:
-    """The second particle reaches the outermost node of the first with a weight of 1e-15, both under pressure."""
+    """Place the second particle so that it gives a node of the first a weight of 1e-15, both under pressure."""
     # of the lowest nodes 0 and 2 of the two, node 2 is common; the weight of the second there is (4e-8)^2/2
     x = np.array([[0.6, 0.6, 0.6], [3.5 - 4e-8, 0.6, 0.6]])
     return {**strained(1.1)(scene), "x": x * scene.dx, "v": np.array([[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])}
 
 
 def distant(distance: float) -> Changes:
-    """The last body that far away [m] along a diagonal."""
+    """Move the last body by a distance [m] along a diagonal."""
 
     def changes(scene: Scene) -> Arrays:
         state = initial_state(scene)
@@ -68,12 +73,12 @@ def distant(distance: float) -> Changes:
 
 
 def near_the_edge(scene: Scene) -> Arrays:
-    """The second of two particles fifty cells inside the range of the grid."""
+    """Place the second of two particles fifty cells inside the range of the grid."""
     return {"x": np.array([[0.0, 0.0, 0.0], [(BLOCK_EDGE * HALF_RANGE - 50.0) * scene.dx, 0.0, 0.0]])}
 
 
 def one_hot(energy: float) -> Changes:
-    """One particle [J/kg] amid cold ones."""
+    """Give one particle at the centre an energy [J/kg], and none to the others."""
 
     def changes(scene: Scene) -> Arrays:
         values = np.zeros(scene.particles)
@@ -84,7 +89,12 @@ def one_hot(energy: float) -> Changes:
 
 
 def random_motion(speed: float, rate: float) -> Changes:
-    """Every particle with a velocity [m/s] and a velocity gradient [1/s] of its own."""
+    """Draw a velocity and a velocity gradient for every particle from normal distributions.
+
+    Args:
+        speed: standard deviation of each component of velocity [m/s].
+        rate: that of each component of the gradient [1/s].
+    """
 
     def changes(scene: Scene) -> Arrays:
         generator, count = np.random.default_rng(scene.seed), scene.particles

@@ -17,7 +17,7 @@ import numpy as np
 
 from engine.errors import GuardFault
 from engine.scene.bodies import Box
-from engine.scene.material import Material
+from engine.scene.material import named
 from engine.scene.scene import Numerics, Physics, Scene
 from engine.verification.harness import Array, Harness, altered
 
@@ -127,7 +127,7 @@ def spectral_radius(T: Array, K: Array, courant: float) -> float:
 
 def _stiffness(D: Array) -> Array:
     """sum_p D^T (lambda tr + 2 mu sym) D with lambda + 2 mu = 1, shape [3 nodes, 3 nodes]."""
-    rock = Material()
+    rock = named("basalt")
     mu = rock.shear_modulus / rock.longitudinal_modulus
     nodes = D.shape[2]
     K = np.empty((3, nodes, 3, nodes))

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import matplotlib.image
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
 from matplotlib.colors import same_color
@@ -14,7 +13,6 @@ from analysis.__main__ import app
 from analysis.accuracy.cases import Case, cases
 from analysis.accuracy.figure import error_against_cost, errors
 from analysis.accuracy.measure import accuracy
-from analysis.accuracy.orders import observed_order
 from analysis.accuracy.report import markdown
 from analysis.results.variables import OUTCOMES
 from campaigns.campaign import KeptCampaign, read_campaign
@@ -23,7 +21,6 @@ from campaigns.study import find_study, read_study
 from engine.errors import SceneError
 from engine.job.storage import read_dataset, write_json
 from engine.scene.collision import Collision
-from engine.verification.accuracy.pareto import pareto
 from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
 
 COUNTS = {"particles500": 500, "base": 1000, "particles4000": 4000, "particles32000": 32000}
@@ -74,29 +71,12 @@ def test_orders_that_seeds_do_not_resolve_are_unknown() -> None:
     assert accuracy(results(1.0), known())["order_b_over_a"].isnull().all()
 
 
-@pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 4.0])
-@pytest.mark.parametrize("finest", [0.0, 0.5])
-def test_observed_order(order: float, finest: float) -> None:
-    coarse, fine = (-7.0 * (h**order - finest**order) for h in (2.0, 1.0))
-    assert observed_order(coarse, fine, (2.0, 1.0, finest)) == pytest.approx(order)
-
-
-@pytest.mark.parametrize(("coarse", "fine"), [(1.0, -1.0), (1.0, 1.0), (0.0, 1.0), (1.0, 2.0)])
-def test_no_order_where_errors_do_not_shrink(coarse: float, fine: float) -> None:
-    assert np.isnan(observed_order(coarse, fine, (2.0, 1.0, 0.5)))
-
-
 def test_an_error_that_seeds_hide_is_their_interval() -> None:
     found = accuracy(results(0.1), known())
     frame = errors(found, "b_over_a")
     assert frame.loc["cfl", "resolved"] and frame.loc["cfl", "error"] == pytest.approx(frame.loc["cfl", "change"])
     assert not frame.loc["base", "resolved"] and frame.loc["base", "error"] == frame.loc["base", "half"]
     assert "particles32000" not in frame.index
-
-
-def test_pareto_front() -> None:
-    runs = pd.DataFrame({"cpu_time": [4.0, 1.0, 2.0, 3.0, 3.0], "error": [1.0, 9.0, 9.0, 4.0, 5.0]})
-    assert pareto(runs).index.tolist() == [1, 3, 0]
 
 
 def test_runs_that_are_not_done_do_not_count() -> None:

@@ -99,6 +99,13 @@ def make_nan(job: Path) -> None:
     write_dataset(job / "final.nc", broken)
 
 
+def rename_a_key(job: Path) -> None:
+    """Give the scene the key that versions before had for the friction of rubble."""
+    scene = (job / "scene.json").read_text()
+    assert '"friction"' in scene
+    (job / "scene.json").write_text(scene.replace('"friction"', '"damaged_friction"'))
+
+
 TIME = ("corrupt", "status.json: damaged: 'wall_time'")
 
 FAULTS = {
@@ -127,6 +134,13 @@ FAULTS = {
         "corrupt",
         "not of the scene",
     ),
+    "other physics may be sound": (
+        lambda job: write_dataset(job / "final.nc", remnant(physics_version=7)),
+        "corrupt",
+        "keep it: it may be sound",
+    ),
+    "scene of another version": (rename_a_key, "corrupt", "is now"),
+    "scene of another version may be sound": (rename_a_key, "corrupt", "keep it: it may be sound"),
     "advice": (truncate, "corrupt", "delete the directory of this job"),
     "scene": (lambda job: (job / "scene.json").write_text("{}"), "corrupt", "scene.json"),
     "no history": (lambda job: (job / "history.nc").unlink(), "corrupt", "history.nc"),
@@ -182,7 +196,7 @@ def test_results_are_cf_and_come_back_as_written(grid: Path) -> None:
     for name in (*OUTCOMES, "velocity", "angle", "end_time"):
         assert again[name].attrs["units"] and again[name].attrs["long_name"], name
     assert again.attrs["Conventions"].startswith("CF-")
-    assert again.attrs["parameter_set"] == "sugiura2018" and again.attrs["material.rho0"] == RHO0
+    assert again.attrs["parameter_set"] == "sugiura2018" and again.attrs["materials.basalt.rho0"] == RHO0
     assert again.attrs["viscosity"] == "none" and again.attrs["physics_version"] == 1
     assert "velocity" not in again.attrs
 

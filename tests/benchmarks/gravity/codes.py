@@ -11,6 +11,7 @@ from engine.constants import G_NEWTON
 from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.direct_sum import DirectSum
 from tests.benchmarks.gravity.states import State
+from tests.helpers.gravity import accelerations
 from tests.helpers.monopoles import Monopoles
 
 Pull = NDArray[np.float64]
@@ -38,11 +39,11 @@ class Ours(Code):
         self.tree = (BarnesHut if quadrupole else Monopoles)(self.particles, self.radius, 1.0)
 
     def exact(self) -> Pull:
-        return DirectSum(self.particles, self.radius).pull(0.0)
+        return accelerations(DirectSum(self.particles, self.radius))
 
     def evaluate(self, opening: float) -> Pull:
         self.tree.opening[None] = opening
-        return self.tree.pull(0.0)
+        return accelerations(self.tree)
 
 
 class PyTreeGrav(Code):

@@ -30,7 +30,7 @@ def measure(interval: float, corrected: bool) -> dict[str, Any]:
     begin, residuals = simulation.totals(), []
     while not simulation.finished:
         simulation.advance(simulation.time + interval)
-        residuals.append((simulation.gravity_force, simulation.gravity_torque))
+        residuals.append((simulation.events.gravity_force, simulation.events.gravity_torque))
     end = simulation.totals()
     force, torque = np.mean(residuals, axis=0)
     lost = np.linalg.norm(end.angular_momentum - begin.angular_momentum) / np.linalg.norm(begin.angular_momentum)

@@ -17,6 +17,7 @@ from tests.benchmarks.child import answer
 from tests.benchmarks.gravity.curve import error
 from tests.benchmarks.gravity.states import PER_BODY, State, save
 from tests.benchmarks.stopwatch import Stopwatch
+from tests.helpers.gravity import accelerations
 
 AFTER_CONTACT = 10_000.0
 
@@ -68,7 +69,7 @@ def error_of_defaults(state: State) -> dict[str, float]:
     particles = state.particles()
     BarnesHut(particles, state.radius, Gravity().opening).accelerate(0.0)
     used = particles.read("acceleration")["acceleration"]
-    return error(used, DirectSum(particles, state.radius).pull(0.0))
+    return error(used, accelerations(DirectSum(particles, state.radius)))
 
 
 if __name__ == "__main__":

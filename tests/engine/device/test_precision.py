@@ -9,12 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from engine.cli import application
-from engine.device.backend import require_precision
-from engine.device.options import VARIABLE, chosen
-from engine.errors import ExitCode, SceneError
+from engine.device.options import VARIABLE
 from engine.job.storage import read_dataset
 from tests.helpers.jobs import assert_same_results, run_engine, start_and_stop, write_job
 
@@ -71,25 +67,3 @@ def test_what_single_precision_must_hold() -> None:
     command = [sys.executable, "-m", "pytest", str(Path(__file__).parent / "single_precision_cases.py")]
     result = subprocess.run(command, env={**os.environ, VARIABLE: "f32"}, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout
-
-
-def test_a_process_of_another_precision_refuses_the_scene() -> None:
-    require_precision("f64")
-    with pytest.raises(SceneError, match=r"'numerics\.precision': the scene asks for f32"):
-        require_precision("f32")
-
-
-def test_an_unknown_precision_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(VARIABLE, "f16")
-    with pytest.raises(SceneError, match=r"'f16' is no precision; allowed: f64, f32"):
-        chosen()
-
-
-@pytest.mark.parametrize("command", [["verify", "slop"], ["accuracy", ".", "slop"], ["stability", "."]])
-@pytest.mark.parametrize("left_behind", ["f32", "f16"])
-def test_commands_without_a_scene_of_their_own_compute_in_double_precision(
-    command: list[str], left_behind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(VARIABLE, left_behind)
-    assert CliRunner().invoke(application, command).exit_code == ExitCode.BAD_INPUT
-    assert chosen() == "f64"

@@ -103,16 +103,16 @@ def test_largest_eigenvalue_is_exact_to_round_off():
 
 def test_determinant_increment_equals_exact_arithmetic():
     generator = np.random.default_rng(3)
-    A = generator.choice(SIZES, (1000, 1, 1)) * generator.uniform(-1.0, 1.0, (1000, 3, 3))
-    (found,) = evaluate(determinant_increment, A)
-    expected = np.array([float(exact_determinant(a) - 1) for a in A])
-    assert worst(found, expected, norm(A)) < 2e-15
+    H = generator.choice(SIZES, (1000, 1, 1)) * generator.uniform(-1.0, 1.0, (1000, 3, 3))
+    (found,) = evaluate(determinant_increment, H)
+    expected = np.array([float(exact_determinant(a) - 1) for a in H])
+    assert worst(found, expected, norm(H)) < 2e-15
 
 
-def exact_determinant(A: Array) -> Fraction:
-    """det(I + A) without rounding."""
+def exact_determinant(H: Array) -> Fraction:
+    """det(I + H) without rounding."""
     (a, b, c), (d, e, f), (g, h, i) = [
-        [Fraction(x) + (row == column) for column, x in enumerate(line)] for row, line in enumerate(A)
+        [Fraction(x) + (row == column) for column, x in enumerate(line)] for row, line in enumerate(H)
     ]
     return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 

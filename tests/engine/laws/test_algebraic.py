@@ -3,7 +3,7 @@ import pytest
 
 from engine.laws.algebraic import Algebraic
 from engine.scene.bodies import Sphere
-from engine.scene.material import Material
+from engine.scene.material import named
 from engine.scene.murnaghan import MurnaghanParameters
 from engine.scene.scene import Scene
 from engine.simulation.initial_conditions import initial_state
@@ -12,8 +12,8 @@ from tests.helpers.device import Array, evaluate, worst
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
-SOFT = Material(rho0=1000.0, eos=MurnaghanParameters(K=2.0e9, n=7.0))
-HARD = Material(rho0=2700.0, eos=MurnaghanParameters(K=2.67e10, n=4.0))
+SOFT = named("basalt", rho0=1000.0, eos=MurnaghanParameters(K=2.0e9, n=7.0))
+HARD = named("basalt", rho0=2700.0, eos=MurnaghanParameters(K=2.67e10, n=4.0))
 
 
 def engine_pressure(mu: Array, E: Array, body: int) -> list[Array]:

@@ -48,9 +48,9 @@ def test_stress_belongs_to_the_deformation_gradient(steps, size):
     generator = np.random.default_rng(2)
     points, X = MaterialPoint(1000), np.zeros((1000, 3, 3))
     for _ in range(steps):
-        A = size * generator.uniform(-1.0, 1.0, (1000, 3, 3))
-        points.step(10.0 * A, 0.1)
-        X = A + X + A @ X
+        H = size * generator.uniform(-1.0, 1.0, (1000, 3, 3))
+        points.step(10.0 * H, 0.1)
+        X = H + X + H @ X
     points.settle()
     ln_V = log_strain(X)
     J = np.exp(np.trace(ln_V, axis1=1, axis2=2))

@@ -4,16 +4,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.laws.flaws import Flaws, draw_flaws, join
-from engine.scene.material import PARAMETER_SETS, FractureRules, Material
+from engine.scene.material import FractureRules, named
 from engine.scene.scene import Scene, Sphere
 from engine.simulation.initial_conditions import all_flaws
+from tests.helpers.parameter_sets import rules_of
 
-COVERED, LISTED = PARAMETER_SETS["sugiura2018"].fracture, PARAMETER_SETS["talk"].fracture
+COVERED, LISTED = rules_of("sugiura2018"), rules_of("talk")
 RULES = pytest.mark.parametrize("rule", [COVERED, LISTED], ids=["covered", "2NlnN"])
 
 
 def draw(particles: int, rule: FractureRules, seed: int = 1, **material: float) -> Flaws:
-    body = Sphere(radius=50e3, particles=particles, material=Material.model_validate(material))
+    body = Sphere(radius=50e3, particles=particles, material=named("basalt", **material))
     return draw_flaws(body, rule, np.random.default_rng(seed))
 
 

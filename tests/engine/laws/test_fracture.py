@@ -3,10 +3,10 @@ import pytest
 
 from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture, Unbreakable
-from engine.scene.material import PARAMETER_SETS
 from engine.scene.scene import Sphere
 from tests.helpers.device import Array, compose, evaluate, rotations, worst
 from tests.helpers.oracle import CRACK_SPEED, LONGITUDINAL, MODULUS, PER_FLAW, RHO0
+from tests.helpers.parameter_sets import rules_of
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -18,11 +18,11 @@ SETS = pytest.mark.parametrize("name", list(MODULUS))
 
 
 def drawn(name: str, seed: int = 1) -> Flaws:
-    return draw_flaws(BODY, PARAMETER_SETS[name].fracture, np.random.default_rng(seed))
+    return draw_flaws(BODY, rules_of(name), np.random.default_rng(seed))
 
 
 def grow(name: str, flaws: Flaws, root: Array, stress: Array, P: Array, dt: Array, p: Array) -> Array:
-    law = Fracture([Sphere(radius=1.0, particles=3), BODY], PARAMETER_SETS[name].fracture, flaws)
+    law = Fracture([Sphere(radius=1.0, particles=3), BODY], rules_of(name), flaws)
     return evaluate(law.grow, root, stress, P, dt, p, np.ones(len(root), dtype=np.int32))[0]
 
 

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 
 from engine.laws.strength import Strength, Unlimited, return_factor
-from engine.scene.material import PARAMETER_SETS, Material
+from engine.scene.material import named
 from tests.helpers.device import Array, evaluate, worst
 from tests.helpers.oracle import FRICTION, U_MELT, strength_limit
+from tests.helpers.parameter_sets import friction_of
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -12,7 +13,7 @@ SETS = list(FRICTION)
 
 
 def law(name: str) -> Strength:
-    return Strength([Material(), Material(damaged_friction=PARAMETER_SETS[name].damaged_friction)])
+    return Strength([named("basalt"), named("basalt", friction=friction_of(name))])
 
 
 def engine_limit(name: str, P: Array, E: Array, D: Array) -> Array:

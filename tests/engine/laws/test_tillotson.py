@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from engine.laws.tillotson import SOUND_SPEED_FLOOR, Tillotson
-from engine.scene.material import Material
+from engine.laws.tillotson import SOUND_SPEED_FLOOR, ColdTillotson, Tillotson
+from engine.scene.material import Material, named
 from tests.helpers.device import Array, evaluate, worst
 from tests.helpers.oracle import E0, E_CV, E_IV, RHO0, K, squared_sound_speed, tillotson
 
@@ -25,7 +25,7 @@ HUGONIOT = np.array(
 
 
 def engine_pressure(mu: Array, E: Array, material: Material | None = None) -> list[Array]:
-    law = Tillotson([Material(), material or Material()])
+    law = Tillotson([named("basalt"), material or named("basalt")])
     body = np.ones(len(mu), dtype=np.int32)
     return evaluate(law.evaluate, body, mu, E, body, outputs=((), ()))
 
@@ -106,7 +106,7 @@ def test_spot_values():
 
 
 def test_each_body_has_its_own_material():
-    soft = Material.model_validate({"rho0": 1000.0, "eos": {"A": 1e9, "B": 2e9}})
+    soft = named("basalt", rho0=1000.0, eos={"A": 1e9, "B": 2e9})
     assert engine_pressure(np.array([0.1]), np.zeros(1), soft)[0][0] == pytest.approx(1e8 + 2e7)
 
 
@@ -135,3 +135,11 @@ def test_matter_without_heat_follows_the_cold_curve():
         P, c2 = engine_pressure(mu, E)
         np.testing.assert_array_equal(P, cold)
         assert (c2 >= FLOOR).all() and np.isfinite(c2).all()
+
+
+def test_without_energy_pressure_follows_the_cold_curve():
+    law = ColdTillotson([named("basalt")])
+    mu, zeros = np.linspace(-0.4, 3.0, 500), np.zeros(500, np.int32)
+    P, c2 = evaluate(law.evaluate, zeros, mu, np.full(500, 1e8), zeros, outputs=((), ()))
+    assert worst(P, K * mu + K * mu**2, K * np.abs(mu)) < 1e-15
+    assert worst(c2, (K + 2.0 * K * mu) / RHO0, K / RHO0) < 1e-15

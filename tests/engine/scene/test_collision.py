@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -6,19 +8,30 @@ from scipy.integrate import solve_ivp
 
 from engine.errors import SceneError
 from engine.scene.collision import Collision
+from engine.scene.collision_bodies import Projectile
 from engine.scene.fields import validate
-from engine.scene.material import PARAMETER_SETS, FractureRules
+from engine.scene.material import FractureRules, named
+from engine.scene.parameter_sets import PARAMETER_SETS
 from engine.scene.scene import Scene, Sphere
 from tests.helpers.oracle import FRICTION
+from tests.helpers.parameter_sets import rules_of
 
 G_N = 6.6743e-11
 SETTINGS = {
     "velocity": st.floats(55.0, 2000.0),
     "angle": st.floats(0.0, 89.0),
-    "radius": st.floats(1e3, 6e4),
-    "projectile_radius": st.one_of(st.none(), st.floats(1e3, 6e4)),
+    "target": st.fixed_dictionaries({"radius": st.floats(1e3, 6e4)}),
+    "projectile": st.fixed_dictionaries({"radius": st.one_of(st.none(), st.floats(1e3, 6e4))}),
     "particles": st.integers(1, 4000),
 }
+
+
+ICE = {"cohesion": 1e6, "intact_friction": 1.0, "melt_energy": 7e5, "friction": 0.6}
+"""Guesses in place of what is not published."""
+
+
+def made(**settings: Any) -> Collision:
+    return Collision.model_validate({"velocity": 200.0, "angle": 15.0, "particles": 1000, **settings})
 
 
 def relative(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -37,7 +50,8 @@ def weighted(bodies: tuple[Sphere, ...], vectors: list[tuple[float, ...]]) -> np
 @given(st.fixed_dictionaries(SETTINGS))
 def test_masses_and_rest_of_the_centre_of_mass(settings):
     scene = Collision.model_validate(settings).scene()
-    radii = [settings["radius"], settings["projectile_radius"] or settings["radius"]]
+    radius = settings["target"]["radius"]
+    radii = [radius, settings["projectile"]["radius"] or radius]
     for body, radius in zip(scene.bodies, radii, strict=True):
         assert body.mass == pytest.approx(2700.0 * 4.0 / 3.0 * np.pi * radius**3, rel=1e-14)
     # positions and velocities carry ten digits
@@ -57,7 +71,7 @@ def test_particles_of_both_bodies_have_nearly_one_mass(settings):
 
 @given(v=st.floats(70.0, 500.0), angle=st.floats(0.0, 80.0), small=st.floats(1e4, 5e4))
 def test_falling_together_from_the_start_the_bodies_meet_as_asked(v, angle, small):
-    scene = Collision(velocity=v, angle=angle, projectile_radius=small).scene()
+    scene = Collision(velocity=v, angle=angle, projectile=Projectile(radius=small)).scene()
     mu = G_N * sum(body.mass for body in scene.bodies)
     path = solve_ivp(
         lambda t, y: np.concatenate([y[3:], -mu * y[:3] / np.linalg.norm(y[:3]) ** 3]),
@@ -91,11 +105,11 @@ def test_without_gravity_bodies_fly_straight_and_start_without_pressure():
 @pytest.mark.parametrize(("name", "flaws"), [("sugiura2018", "covered"), ("talk", "2NlnN")])
 def test_a_parameter_set_fixes_friction_and_fracture_unless_they_are_given(name, flaws):
     scene = Collision(velocity=200.0, angle=15.0, parameter_set=name).scene()
-    assert [body.material.damaged_friction for body in scene.bodies] == [FRICTION[name], FRICTION[name]]
+    assert [body.material.friction for body in scene.bodies] == [FRICTION[name], FRICTION[name]]
     assert scene.physics.fracture.flaws == flaws
-    other = {"friction": 0.5, "fracture": {"flaws": "2NlnN", "growth_speed": 0.3}}
+    other = {"materials": {"basalt": {"friction": 0.5}}, "fracture": {"flaws": "2NlnN", "growth_speed": 0.3}}
     scene = Collision.model_validate({"velocity": 200, "angle": 15, "parameter_set": name, **other}).scene()
-    assert scene.bodies[0].material.damaged_friction == 0.5
+    assert scene.bodies[0].material.friction == 0.5
     assert scene.physics.fracture.growth_speed == 0.3
 
 
@@ -103,10 +117,96 @@ def test_a_parameter_set_fixes_friction_and_fracture_unless_they_are_given(name,
 def test_a_rule_of_fracture_leaves_the_others_of_the_set(name):
     given = {"velocity": 200.0, "angle": 15.0, "parameter_set": name, "fracture": {"growth_range": 2.0}}
     collision = Collision.model_validate(given)
-    rules = PARAMETER_SETS[name].fracture.model_copy(update={"growth_range": 2.0})
+    rules = rules_of(name).model_copy(update={"growth_range": 2.0})
     assert collision.scene().physics.fracture == rules
-    assert Collision.model_validate(given | {"fracture": FractureRules(growth_range=2.0)}) == collision
+    assert Collision.model_validate(given | {"fracture": rules}) == collision
     assert Collision.model_validate_json(collision.canonical()) == collision
+
+
+def test_the_set_of_sugiura_2018_leaves_basalt_as_it_ships():
+    collision = Collision(velocity=200.0, angle=15.0)
+    assert collision.materials == {"basalt": named("basalt")}
+    assert collision.fracture == FractureRules()
+
+
+def test_the_set_of_the_talk_differs_in_friction_and_fracture_only():
+    s18, talk = (Collision(velocity=200.0, angle=15.0, parameter_set=name).scene() for name in ("sugiura2018", "talk"))
+    rules = FractureRules(flaws="2NlnN", strain="young", growth_speed=0.5, growth_range=3.0, per_flaw=False)
+    physics = s18.physics.model_copy(update={"fracture": rules})
+    rock = s18.bodies[0].material.model_copy(update={"friction": 0.945})
+    bodies = tuple(body.model_copy(update={"material": rock}) for body in s18.bodies)
+    assert talk == s18.model_copy(update={"physics": physics, "bodies": bodies})
+
+
+def test_each_body_has_its_own_material_and_the_projectile_is_like_the_target_unless_it_says():
+    tables = {"materials": {"ice": ICE}, "projectile": {"material": "ice"}}
+    target, projectile = made(**tables).scene().bodies
+    assert target.material == named("basalt") and projectile.material == named("ice", **ICE)
+    # the same spacing, not the same mass per particle
+    assert projectile.spacing == target.spacing
+    assert projectile.mass / target.mass == pytest.approx(917.0 / 2700.0, rel=1e-14)
+    both = made(target={"material": "ice", "radius": 1e4}, materials={"ice": ICE}).scene().bodies
+    assert {(body.material.name, body.radius) for body in both} == {("ice", 1e4)}
+
+
+def test_a_material_of_its_own_may_start_from_a_shipped_one():
+    rubble = {"name": "basalt", "rho0": 2000.0}
+    body = made(target={"material": "rubble"}, materials={"rubble": rubble}).scene().bodies[0]
+    assert body.material == named("basalt", rho0=2000.0)
+    own = {**named("ice", **ICE).model_dump(exclude={"name"}), "rho0": 800.0}
+    collision = made(target={"material": "firn"}, materials={"firn": own})
+    assert collision.scene().bodies[1].material.rho0 == 800.0
+    assert Collision.model_validate_json(collision.canonical()) == collision
+
+
+def test_what_a_material_lacks_is_asked_for_by_its_key():
+    with pytest.raises(SceneError, match=r"'materials\.ice' lacks cohesion, .*, which strength needs: give them"):
+        made(projectile={"material": "ice"}).scene()
+    unknown = {**ICE, "weibull_k": None}
+    with pytest.raises(SceneError, match=r"'materials\.ice' lacks weibull_k, which fracture needs: .*fracture = false"):
+        made(projectile={"material": "ice"}, materials={"ice": unknown}).scene()
+    assert made(projectile={"material": "ice"}, materials={"ice": unknown}, fracture=False).scene()
+
+
+def spin_momentum(body: Sphere) -> np.ndarray:
+    """Angular momentum of a body about its centre [kg m^2/s]."""
+    return 0.4 * body.mass * body.radius**2 * np.array(body.spin)
+
+
+@pytest.mark.parametrize(
+    ("obliquity", "axis"),
+    [
+        (0.0, (0.0, 0.0, 1.0)),
+        (90.0, (1.0, 0.0, 0.0)),
+        (180.0, (0.0, 0.0, -1.0)),
+        (60.0, (3**0.5 / 2.0, 0.0, 0.5)),
+    ],
+)
+def test_a_period_and_an_obliquity_make_a_spin(obliquity, axis):
+    scene = made(target={"spin_period": 4.0, "spin_obliquity": obliquity}).scene()
+    target, projectile = scene.bodies
+    rate = 2.0 * np.pi / (4.0 * 3600.0)
+    np.testing.assert_allclose(target.spin, rate * np.array(axis), rtol=1e-9, atol=1e-16)
+    assert projectile.spin == (0.0, 0.0, 0.0)
+    np.testing.assert_allclose(target.spin_momentum, spin_momentum(target), rtol=1e-14)
+
+
+def test_a_prograde_spin_adds_to_the_angular_momentum_of_the_impact_and_a_retrograde_one_takes_away():
+    spins = [{}, {"spin_period": 6.0}, {"spin_period": 6.0, "spin_obliquity": 180.0}]
+    momenta = []
+    for spin in spins:
+        bodies = made(projectile={"radius": 3e4, **spin}).scene().bodies
+        orbital = sum(body.mass * np.cross(body.position, body.velocity) for body in bodies)
+        momenta.append(orbital + sum(np.array(body.spin_momentum) for body in bodies))
+    still, prograde, retrograde = momenta
+    assert still[2] > 0.0 and not still[:2].any()
+    own = 0.4 * 2700.0 * 4.0 / 3.0 * np.pi * 3e4**5 * 2.0 * np.pi / (6.0 * 3600.0)
+    np.testing.assert_allclose(prograde - still, [0.0, 0.0, own], rtol=1e-9)
+    np.testing.assert_allclose(retrograde - still, [0.0, 0.0, -own], rtol=1e-9)
+
+
+def test_bodies_may_start_damaged():
+    assert [body.damage for body in made(target={"damage": 1.0}).scene().bodies] == [1.0, 0.0]
 
 
 def test_false_leaves_parts_out():
@@ -120,7 +220,7 @@ def test_false_leaves_parts_out():
 
 @given(st.fixed_dictionaries(SETTINGS))
 def test_equal_numbers_make_equal_jobs(settings):
-    as_floats = {key: value if value is None else float(value) for key, value in settings.items()}
+    as_floats = {key: float(value) if isinstance(value, int) else value for key, value in settings.items()}
     reversed_order = dict(reversed(settings.items()))
     one = Collision.model_validate(settings)
     for same in (Collision.model_validate(as_floats), Collision.model_validate(reversed_order)):
@@ -136,34 +236,64 @@ def test_whole_numbers_and_floats_are_the_same_job_and_other_values_are_not():
     assert len(hashes | {one.hash()}) == len(changes) + 1
 
 
+OLD_KEYS = {
+    "radius": ({"radius": 1e4}, "'radius' is now 'target.radius'"),
+    "radius of the projectile": ({"projectile_radius": 1e4}, "'projectile_radius' is now 'projectile.radius'"),
+    "friction": ({"friction": 0.5}, "'friction' is now 'materials.basalt.friction'"),
+    "material": ({"material": {"rho0": 1.0}}, "'material' is now 'materials.basalt'"),
+    "damaged friction": (
+        {"materials": {"ice": {"damaged_friction": 0.5}}},
+        "'materials.ice.damaged_friction' is now 'materials.ice.friction'",
+    ),
+    "Tillotson": ({"materials": {"basalt": {"tillotson": {}}}}, "basalt.tillotson' is now 'materials.basalt.eos'"),
+}
+
+
+@pytest.mark.parametrize(("change", "told"), OLD_KEYS.values(), ids=OLD_KEYS)
+def test_an_old_key_is_refused_with_the_new_one_named(change, told):
+    with pytest.raises(SceneError) as error:
+        validate(Collision, {"velocity": 200.0, "angle": 15.0, **change}, "study.toml")
+    assert str(error.value).startswith("study.toml: ") and str(error.value).endswith(told)
+
+
 BAD = {
     "no speed": ({"velocity": 0.0}, "'velocity'", "greater than 0", "0.0"),
     "no number": ({"velocity": "fast"}, "'velocity'", "number", "'fast'"),
     "not a number": ({"velocity": float("nan")}, "'velocity'", "nan"),
-    "infinite": ({"radius": float("inf")}, "'radius'", "finite", "inf"),
+    "infinite": ({"target": {"radius": float("inf")}}, "'target.radius'", "finite", "inf"),
     "backward": ({"angle": -1.0}, "'angle'", "greater than or equal to 0", "-1.0"),
     "beyond grazing": ({"angle": 91.0}, "'angle'", "less than or equal to 90", "91.0"),
     "fraction of a particle": ({"particles": 10.5}, "'particles'", "10.5"),
-    "misspelt": ({"raduis": 1e4}, "unknown key 'raduis'", "did you mean 'radius'"),
+    "misspelt": ({"target": {"raduis": 1e4}}, "unknown key 'target.raduis'", "did you mean 'radius'"),
     "misspelt within": ({"numerics": {"cfi": 0.1}}, "unknown key 'numerics.cfi'", "did you mean 'cfl'"),
-    "misspelt material": ({"material": {"eos": {"e0": 1.0}}}, "material.eos.e0", "did you mean 'E0'"),
+    "misspelt material": (
+        {"materials": {"basalt": {"eos": {"e0": 1.0}}}},
+        "materials.basalt.eos.e0",
+        "did you mean 'E0'",
+    ),
     "misspelt set": ({"parameter_set": "tolk"}, "unknown parameter_set 'tolk'", "did you mean 'talk'"),
     "start inside": ({"start_separation": 1.0}, "'start_separation'", "greater than 1", "1.0"),
     "ends at contact": ({"end_time": 0.0}, "end_time", "0.0", "greater than 0"),
     "large step": ({"numerics": {"cfl": 1.5}}, "'numerics.cfl'", "1.5"),
-    "friction in the material": ({"material": {"damaged_friction": 0.5}}, "'material'", "give 'friction'"),
-    "yes for fracture": ({"fracture": True}, "'fracture'", "a table of keys or False", "True"),
+    "yes for fracture": ({"fracture": True}, "'fracture'", "a table of keys", "True"),
     "misspelt rule": ({"fracture": {"growth": 1}}, "unknown key 'fracture.growth'", "did you mean 'growth_"),
     "nonsense flaws": ({"fracture": {"flaws": "many"}}, "'fracture.flaws'", "'covered' or '2NlnN'", "'many'"),
     "switch for a speed": ({"velocity": True}, "'velocity'", "a number, not true or false", "True"),
     "switch for a seed": ({"seed": False}, "'seed'", "a number, not true or false", "False"),
-    "switch for what has a default": ({"friction": False}, "'friction'", "a number, not true or false"),
+    "switch for what has a default": ({"sound_speed": False}, "'sound_speed'", "a number, not true or false"),
     "too many particles": ({"particles": 10**10}, "'particles'", "less than or equal to 1073741824"),
     "too many particles in the projectile": (
-        {"projectile_radius": 1e7},
-        "'projectile_radius' 10000000.0 m",
+        {"projectile": {"radius": 1e7}},
+        "'projectile.radius' 10000000.0 m",
         "at most 1.89e+06 m",
     ),
+    "no table of materials": ({"materials": 3}, "'materials'", "a table of keys", "3"),
+    "misspelt choice of material": ({"target": {"material": "icee"}}, "'target.material'", "did you mean 'ice'"),
+    "misspelt constants": ({"materials": {"bsalt": {"friction": 1}}}, "'bsalt'", "did you mean 'basalt'", "rho0"),
+    "key of a material": ({"rho0": 1.0}, "unknown key 'rho0'", "did you mean 'materials.NAME.rho0'"),
+    "no day": ({"target": {"spin_period": 0.0}}, "'target.spin_period'", "greater than 0", "0.0"),
+    "turned over twice": ({"target": {"spin_obliquity": 200}}, "'target.spin_obliquity'", "equal to 180", "200"),
+    "name with a dot": ({"materials": {"a.b": {}}}, "'materials.a.b'", "pattern"),
     "key of numerics": ({"precision": "f32"}, "unknown key 'precision'", "did you mean 'numerics.precision'"),
     "negative seed": ({"seed": -1}, "'seed'", "-1"),
 }

@@ -6,13 +6,13 @@ from scipy.integrate import quad
 
 from engine.errors import SceneError
 from engine.scene.fields import validate
-from engine.scene.material import Material
+from engine.scene.material import Material, named
 from engine.scene.murnaghan import MurnaghanParameters
 from engine.scene.scene import Scene
 from engine.scene.tillotson import TillotsonParameters
 
 RHO0 = 2700.0
-FORMS = [TillotsonParameters(), TillotsonParameters(A=9.47e9, B=9.47e9), MurnaghanParameters(K=2.0e10, n=5.5)]
+FORMS = [named("basalt").eos, named("ice").eos, MurnaghanParameters(K=2.0e10, n=5.5)]
 forms = pytest.mark.parametrize("eos", FORMS, ids=lambda eos: f"{eos.form}-{eos.bulk_modulus():g}")
 
 
@@ -59,19 +59,21 @@ def test_softer_matter_has_a_slower_sound_and_the_same_curve(eos):
 
 
 def test_only_a_form_with_vapour_has_an_energy_of_it():
-    assert TillotsonParameters().vaporisation_energy() == 4.72e6
+    assert named("basalt").eos.vaporisation_energy() == 4.72e6
     assert MurnaghanParameters(K=2.0e10, n=5.5).vaporisation_energy() == np.inf
 
 
 def test_the_form_chooses_the_constants_and_tillotson_is_the_default():
-    assert Material.model_validate({"eos": {"A": 1e9}}).eos == TillotsonParameters(A=1e9)
-    named = Material.model_validate({"eos": {"form": "murnaghan", "K": 1e9, "n": 7}})
-    assert named.eos == MurnaghanParameters(K=1e9, n=7.0)
-    assert Material.model_validate(named.model_dump()) == named
+    constants = named("ice").eos.constants()
+    own = Material.model_validate({"rho0": 900.0, "shear_modulus": 1e9, "eos": constants})
+    assert own.eos == TillotsonParameters(**constants) == named("ice").eos
+    changed = named("basalt", eos={"form": "murnaghan", "K": 1e9, "n": 7})
+    assert changed.eos == MurnaghanParameters(K=1e9, n=7.0)
+    assert Material.model_validate(changed.model_dump()) == changed
 
 
 BAD = {
-    "old key": ({"tillotson": {"A": 1e9}}, "unknown key 'tillotson'", "did you mean 'eos'"),
+    "old key": ({"tillotson": {"A": 1e9}}, "'tillotson' is now 'eos'"),
     "unknown form": ({"eos": {"form": "ideal"}}, "'eos'", "'tillotson' or 'murnaghan'"),
     "missing constant": ({"eos": {"form": "murnaghan", "K": 1e9}}, "missing key 'eos.n'"),
     "constant of another form": ({"eos": {"form": "murnaghan", "A": 1e9, "n": 4}}, "'eos.A'", "form, K, n"),
@@ -82,12 +84,14 @@ BAD = {
 @pytest.mark.parametrize(("table", "told"), [(case[0], case[1:]) for case in BAD.values()], ids=list(BAD))
 def test_a_wrong_equation_of_state_is_named(table, told):
     with pytest.raises(SceneError) as error:
-        validate(Material, table, "scene.toml")
+        validate(Material, {"name": "basalt", **table}, "scene.toml")
     assert all(part in str(error.value) for part in told), str(error.value)
 
 
 def test_a_scene_has_one_form():
-    stone, ice = ({"radius": 1e3, "particles": 10, "material": {"eos": eos.model_dump()}} for eos in FORMS[::2])
+    stone, ice = (
+        {"radius": 1e3, "particles": 10, "material": {"name": "basalt", "eos": eos.model_dump()}} for eos in FORMS[::2]
+    )
     with pytest.raises(SceneError, match=r"one form in all bodies .*murnaghan, tillotson"):
         validate(Scene, {"bodies": [stone, ice], "end_time": 1.0}, "scene.toml")
     assert len(validate(Scene, {"bodies": [ice, ice], "end_time": 1.0}, "scene.toml").bodies) == 2

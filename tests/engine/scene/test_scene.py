@@ -24,7 +24,7 @@ def with_body(**changes: Any) -> dict[str, Any]:
 
 
 def with_material(**changes: Any) -> dict[str, Any]:
-    return with_body(material=changes)
+    return with_body(material={"name": "basalt", **changes})
 
 
 BAD = {

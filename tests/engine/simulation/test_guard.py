@@ -16,10 +16,8 @@ from engine.job.checkpoint import save_checkpoint
 from engine.job.directory import JobDirectory, Status
 from engine.job.session import Options, Run
 from engine.scene.collision import Collision
-from engine.scene.material import Material
 from engine.scene.scene import Physics, Scene, Wall
-from engine.scene.tillotson import TillotsonParameters
-from engine.simulation.bounds import compression_limit, energy_growth, speed_scale
+from engine.simulation.bounds import energy_growth, speed_scale
 from engine.simulation.conservation import Row, as_row, totals
 from engine.simulation.guard import ENERGY_GROWTH, LARGEST_DRIFT, SPEED_FACTOR, STEPS_FACTOR, Guard
 from engine.simulation.simulation import Simulation
@@ -130,12 +128,6 @@ def test_a_compression_beyond_the_energy_of_the_bound_is_named():
     fault = stopped(guard, changed(state, "j", j))
     assert (fault.quantity, fault.particle) == ("rho/rho0", 7)
     guard.check(row_of(state), changed(state, "j", 1.0 / (0.999 * guard.compression) - 1.0))
-
-
-def test_the_bound_of_compression_uses_the_energy_up_and_soft_matter_has_none():
-    assert Material().eos.cold_energy(2700.0, compression_limit(Material(), 5e6)) == pytest.approx(5e6)
-    soft = Material(eos=TillotsonParameters(A=1.0, B=0.0))
-    assert compression_limit(soft, 5e6) == np.inf
 
 
 def test_mass_must_stay_to_the_last_digit():

@@ -5,7 +5,7 @@ import pytest
 
 from engine.device import backend
 from engine.scene.collision import Collision
-from engine.scene.material import Material
+from engine.scene.material import named
 from engine.scene.scene import Physics, Scene, Sphere
 from engine.simulation.initial_conditions import initial_state
 from engine.simulation.simulation import Simulation
@@ -15,15 +15,17 @@ from engine.verification.problems.hydrostatic import Hydrostatic
 from tests.helpers.device import evaluate
 from tests.helpers.oracle import LONGITUDINAL, RHO0
 
+BASALT = named("basalt")
+
 
 def test_all_waves_travel_at_the_factor_and_strength_stays():
-    slow = Material().slowed(0.5)
+    slow = BASALT.slowed(0.5)
     assert slow.longitudinal_speed == pytest.approx(0.5 * np.sqrt(LONGITUDINAL / RHO0), rel=1e-15)
-    assert slow.shear_modulus == 0.25 * Material().shear_modulus
-    assert slow.eos.bulk_modulus() == 0.25 * Material().eos.bulk_modulus()
+    assert slow.shear_modulus == 0.25 * BASALT.shear_modulus
+    assert slow.eos.bulk_modulus() == 0.25 * BASALT.eos.bulk_modulus()
     moduli = {"eos", "shear_modulus"}
-    assert slow.model_dump(exclude=moduli) == Material().model_dump(exclude=moduli)
-    assert Material().slowed(1.0) == Material()
+    assert slow.model_dump(exclude=moduli) == BASALT.model_dump(exclude=moduli)
+    assert BASALT.slowed(1.0) == BASALT
 
 
 def test_a_wave_in_a_column_takes_twice_as_long_at_half_the_speed():
@@ -32,7 +34,7 @@ def test_a_wave_in_a_column_takes_twice_as_long_at_half_the_speed():
         backend.start(threads=1)  # kernels are the same, and found where the first run left them
         measured.append(StandingWave(16, sound_speed=factor).measure(Harness()))
     fast, slow = measured
-    assert fast.speed == pytest.approx(Material().longitudinal_speed, rel=0.02)
+    assert fast.speed == pytest.approx(BASALT.longitudinal_speed, rel=0.02)
     # the error of the scheme scales along, but for the motion in the Courant condition
     assert slow.speed == pytest.approx(0.5 * fast.speed, rel=1e-9)
 

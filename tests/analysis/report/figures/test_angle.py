@@ -68,7 +68,7 @@ def test_only_thin_remnants_are_hollow(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("velocities", [[200.0], [100.0, 200.0]])
 def test_no_two_lines_look_alike(tmp_path: Path, velocities: list[float]) -> None:
-    coords = {"velocity": velocities, "angle": [5.0], "friction": [0.4, 0.5, 0.6, 0.8]}
+    coords = {"velocity": velocities, "angle": [5.0], "materials.basalt.friction": [0.4, 0.5, 0.6, 0.8]}
     results = collect(campaign(tmp_path, coords, grid(coords), 4 * len(velocities)))
     lines = angle.draw(results, {}).legends[0].get_lines()[:-1]
     looks = {(tuple(line.get_color()), line.get_marker(), line.get_linestyle()) for line in lines}

@@ -5,7 +5,7 @@ from matplotlib.colors import to_rgba
 
 from analysis.remnant.conservation import drifts, read_history
 from analysis.report.figures import conservation
-from engine.job.directory import JobDirectory
+from engine.job.directory import JobState
 from engine.scene.scene import scene_in
 
 ENERGIES = {
@@ -18,8 +18,8 @@ ENERGIES = {
 
 
 def test_the_ledger_shows_all_energies_of_the_first_run_in_units_of_its_kinetic_energy(partly_done) -> None:
-    ledger = conservation.draw(partly_done.results, partly_done.directories).axes[0]
-    history = read_history(JobDirectory(partly_done.directories["0"]).history)
+    ledger = conservation.draw(partly_done.results, partly_done.outcomes).axes[0]
+    history = read_history(partly_done.outcomes["0"].job.history)
     assert ledger.get_title() == "energies at 100 m/s, 5°"
     assert ledger.get_xlabel() == "time after contact [1000 s]"
     assert ledger.get_ylabel() == "energy / kinetic energy at the start"
@@ -31,13 +31,13 @@ def test_the_ledger_shows_all_energies_of_the_first_run_in_units_of_its_kinetic_
 
 
 def test_every_run_has_its_line_of_each_drift_in_the_colour_of_its_velocity(partly_done) -> None:
-    figure = conservation.draw(partly_done.results, partly_done.directories)
+    figure = conservation.draw(partly_done.results, partly_done.outcomes)
     panels = figure.axes[1:]
+    done = [outcome.job for outcome in partly_done.outcomes.values() if outcome.state is JobState.DONE]
     assert [axes.get_title() for axes in panels] == ["mass", "momentum", "angular momentum", "total energy"]
-    for axes, name in zip(panels, ("mass", "momentum", "angular_momentum", "energy"), strict=True):
+    for axes, name in zip(panels, ("mass", "momentum", "angular_momentum", "total_energy"), strict=True):
         assert axes.get_yscale() == "log" and len(axes.lines) == 4
-        for line, directory in zip(axes.lines, partly_done.directories.values(), strict=True):
-            job = JobDirectory(directory)
+        for line, job in zip(axes.lines, done, strict=True):
             found = np.abs(drifts(read_history(job.history), scene_in(job.path))[name][1:])
             np.testing.assert_allclose(line.get_ydata(), np.maximum(found, 1e-17))
         colours = [to_rgba(line.get_color()) for line in axes.lines]
@@ -45,7 +45,7 @@ def test_every_run_has_its_line_of_each_drift_in_the_colour_of_its_velocity(part
 
 
 def test_axes_and_velocities_are_named(partly_done) -> None:
-    figure = conservation.draw(partly_done.results, partly_done.directories)
+    figure = conservation.draw(partly_done.results, partly_done.outcomes)
     texts = [part.get_supxlabel() for part in figure.subfigs] + [part.get_supylabel() for part in figure.subfigs]
     assert {"time after contact [1000 s]", "size of the relative change since the start"} <= set(texts)
     legends = [[text.get_text() for text in legend.get_texts()] for part in figure.subfigs for legend in part.legends]

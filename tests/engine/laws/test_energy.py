@@ -35,9 +35,9 @@ def test_shear_stores_the_elastic_energy_of_the_log_strain():
     for Q in np.linalg.qr(np.random.default_rng(1).normal(size=(4, 3, 3)))[0]:
         for n in range(40):
             size = np.where(n < steps, 0.1 / steps, 0.0)
-            A = size[:, None, None] * np.outer(Q[:, 0], Q[:, 1])
-            points.step(A, 1.0)
-            X = A + X + A @ X
+            H = size[:, None, None] * np.outer(Q[:, 0], Q[:, 1])
+            points.step(H, 1.0)
+            X = H + X + H @ X
     errors = np.abs(points["E"] * RHO0 / (G * norm(traceless(log_strain(X))) ** 2) - 1.0)
     # of second order, as an isochoric increment has no trace
     assert errors[2] < 1e-3

@@ -18,13 +18,13 @@ Scalars = ti.types.ndarray(dtype=ti.f64, ndim=1)
 
 
 @ti.kernel
-def repeat(A: Matrices, steps: ti.i32, B: Components, j: Scalars):
+def repeat(H: Matrices, steps: ti.i32, B: Components, j: Scalars):
     """The same increment over and over."""
-    for p in range(A.shape[0]):
+    for p in range(H.shape[0]):
         strain, volume = B[p], j[p]
         for _ in range(steps):
-            growth = determinant_increment(A[p])
-            strain = deform(strain, A[p], growth)
+            growth = determinant_increment(H[p])
+            strain = deform(strain, H[p], growth)
             volume += (1.0 + volume) * growth
         B[p], j[p] = strain, volume
 
@@ -56,11 +56,11 @@ def test_forty_thousand_exact_rotations_leave_a_strain_of_1e_6(angle, axes):
     count, steps = 60, 40000
     axis = generator.normal(size=(count, 3)) if axes == "any" else np.tile(np.eye(3), (count // 3, 1))
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
-    A = np.array([rotation_increment(n, angle) for n in axis])
+    H = np.array([rotation_increment(n, angle) for n in axis])
     start = compose(1e-6 * generator.uniform(-1.0, 1.0, (count, 3)), rotations(generator, count))
     B, j = packed(start), 1e-6 * generator.uniform(-1.0, 1.0, count)
     volume = j.copy()
-    repeat(A, steps, B, j)
+    repeat(H, steps, B, j)
     R = Rotation.from_rotvec(steps * angle * axis).as_matrix()
     assert worst(unpacked(B), R @ start @ R.transpose(0, 2, 1), 1.0) < 1e-14
     assert worst(j, volume, 1.0) < 1e-14
@@ -85,9 +85,9 @@ def test_log_strain_is_that_of_the_product_of_all_increments(steps, size):
     count = 1000
     B, j, X = np.zeros((count, 6)), np.zeros(count), np.zeros((count, 3, 3))
     for _ in range(steps):
-        A = size * generator.uniform(-1.0, 1.0, (count, 3, 3))
-        repeat(A, 1, B, j)
-        X = A + X + A @ X
+        H = size * generator.uniform(-1.0, 1.0, (count, 3, 3))
+        repeat(H, 1, B, j)
+        X = H + X + H @ X
     found = np.zeros((count, 3, 3))
     deviatoric_log(B, found)
     expected = log_strain(X)
@@ -100,10 +100,10 @@ def test_log_strain_is_that_of_the_product_of_all_increments(steps, size):
 def test_simple_shear_gives_exactly_gamma_and_its_square():
     """F = I + gamma e_x e_y, F F^T - I = gamma (e_x e_y + e_y e_x) + gamma^2 e_x e_x."""
     gamma = np.array([1e-8, 1e-4, 0.3])
-    A = np.zeros((3, 3, 3))
-    A[:, 0, 1] = gamma
+    H = np.zeros((3, 3, 3))
+    H[:, 0, 1] = gamma
     B, j = np.zeros((3, 6)), np.zeros(3)
-    repeat(A, 1, B, j)
+    repeat(H, 1, B, j)
     assert np.array_equal(j, np.zeros(3))
     assert worst(B, np.stack([gamma**2, *np.zeros((4, 3)), gamma], axis=1), gamma) < 1e-15
 
@@ -113,10 +113,10 @@ def test_a_single_large_step_keeps_a_strain_that_has_a_logarithm(growth):
     """An isotropic step of any size leaves no shear, and one with shear leaves the shear of F F^T."""
     stretch = (1.0 + growth) ** (1.0 / 3.0)
     F = stretch * np.array([[1.1, 0.2, 0.0], [0.0, 1.0 / 1.1, 0.0], [0.0, 0.0, 1.0]])
-    A, B, j = np.array([stretch * np.eye(3), F]) - np.eye(3), np.zeros((2, 6)), np.zeros(2)
-    repeat(A, 1, B, j)
+    H, B, j = np.array([stretch * np.eye(3), F]) - np.eye(3), np.zeros((2, 6)), np.zeros(2)
+    repeat(H, 1, B, j)
     found = np.zeros((2, 3, 3))
     deviatoric_log(B, found)
-    expected = traceless(log_strain(A))
+    expected = traceless(log_strain(H))
     assert worst(found, expected, 1.0) < 1e-14
     assert worst(j, np.full(2, growth), 1.0 + growth) < 1e-14

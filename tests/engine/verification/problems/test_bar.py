@@ -5,26 +5,26 @@ import pytest
 
 from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture
-from engine.scene.material import PARAMETER_SETS, Material
+from engine.scene.material import named
 from engine.scene.scene import Sphere
 from engine.verification.material_point import MaterialPoint
+from engine.verification.problems.bar import Bar, Pull
 from tests.helpers.device import Array, worst
 from tests.helpers.oracle import CRACK_SPEED, FRICTION, LONGITUDINAL, MODULUS, RHO0, G, strength_limit, tillotson
-
-pytestmark = pytest.mark.usefixtures("taichi")
+from tests.helpers.parameter_sets import rules_of
 
 BODY = Sphere(radius=1.0, particles=200)
 STEPS = 600
 
 
 def drawn(name: str) -> Flaws:
-    return draw_flaws(BODY, PARAMETER_SETS[name].fracture, np.random.default_rng(1))
+    return draw_flaws(BODY, rules_of(name), np.random.default_rng(1))
 
 
 def engine_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     """Axial stress [Pa] and damage of every particle, shape [STEPS, particles]."""
-    fracture = Fracture([BODY], PARAMETER_SETS[name].fracture, drawn(name))
-    material = Material(damaged_friction=FRICTION[name])
+    fracture = Fracture([BODY], rules_of(name), drawn(name))
+    material = named("basalt", friction=FRICTION[name])
     points = MaterialPoint(BODY.particles, material, strength=True, fracture=fracture)
     stress, damage = [], []
     for _ in range(STEPS):
@@ -63,6 +63,7 @@ def oracle_bar(name: str, rate: float, dt: float) -> tuple[Array, Array]:
     return np.array(stress), np.array(damage)
 
 
+@pytest.mark.usefixtures("taichi")
 @pytest.mark.parametrize("name", list(FRICTION))
 @pytest.mark.parametrize("rate", [0.1, 1.0, 100.0])
 def test_a_bar_breaks_as_an_independent_integration_says(name, rate):
@@ -75,3 +76,9 @@ def test_a_bar_breaks_as_an_independent_integration_says(name, rate):
     # round-off of 600 steps
     assert worst(stress, expected_stress, mean.max()) < 1e-12
     assert worst(damage, expected_damage, 1.0) < 1e-13
+
+
+@pytest.mark.parametrize("rate", Bar().rates)
+def test_bars_are_pulled_beyond_their_peak(rate):
+    stress = Pull(rate).reference()
+    assert stress.argmax() < 0.7 * len(stress)

@@ -1,0 +1,57 @@
+"""Bounds that follow from a scene."""
+
+import numpy as np
+import pytest
+
+from engine.scene.material import named
+from engine.simulation.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift
+from engine.simulation.conservation import Row
+from tests.helpers.scenes import body, scene
+
+PULLED = {"fracture": None, "gravity": None, "uniform_gravity": (0.0, 0.0, -1.0)}
+
+
+def row(**energies: float) -> Row:
+    names = ("kinetic_energy", "affine_kinetic_energy", "internal_energy", "elastic_energy", "gravitational_energy")
+    parts = {name: energies.get(name, 0.0) for name in names}
+    total = sum(value for name, value in parts.items() if name != "elastic_energy")
+    values = {**parts, "total_energy": total, "half_step_work": energies.get("half_step_work", 0.0), "mass": 1.0}
+    return {name: np.asarray(value) for name, value in values.items()}
+
+
+def test_the_bound_of_compression_uses_the_energy_up_and_soft_matter_has_none() -> None:
+    basalt, soft = named("basalt"), named("basalt", eos={"A": 1.0, "B": 0.0})
+    assert basalt.eos.cold_energy(2700.0, compression_limit(basalt, 5e6)) == pytest.approx(5e6)
+    assert compression_limit(soft, 5e6) == np.inf
+
+
+def test_growth_of_energy_is_measured_in_all_energies_at_the_time_of_stress() -> None:
+    given, start = scene(body()), row(kinetic_energy=6e20, internal_energy=-4e20)
+    assert energy_growth(given, row(kinetic_energy=7e20, internal_energy=-4e20), start) == pytest.approx(0.1)
+    swung = row(kinetic_energy=5e20, internal_energy=-4e20, half_step_work=1e20)
+    assert energy_growth(given, swung, start) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_scene_at_rest_measures_its_growth_in_the_round_off_of_sound() -> None:
+    given = scene(body())
+    scale = np.finfo(np.float64).eps * given.materials[0].longitudinal_speed ** 2
+    assert energy_growth(given, row(kinetic_energy=scale), row()) == pytest.approx(1.0)
+
+
+def test_drift_of_momentum_has_no_direction() -> None:
+    one, other = ({"momentum": np.array(values)} for values in ([1.0, 2.0, 3.0], [1.0, -1.0, 7.0]))
+    assert momentum_drift(one, other) == momentum_drift(other, one) == 5.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "momentum", "energy"),
+    [
+        ({}, True, True),
+        ({"physics": PULLED}, False, True),
+        ({"physics": {"fracture": None, "gravity": None, "walls": [{"point": [0.0, 0.0, -1e6]}]}}, False, True),
+        ({"physics": {"fracture": None, "gravity": None, "energy": False}}, True, False),
+    ],
+)
+def test_what_a_scene_conserves(changes, momentum, energy) -> None:
+    given = scene(body(), **changes)
+    assert (keeps_momentum(given), keeps_energy(given)) == (momentum, energy)
