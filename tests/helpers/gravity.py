@@ -3,6 +3,7 @@
 import numpy as np
 
 from engine.constants import G_NEWTON
+from engine.gravity.barnes_hut import BarnesHut
 from engine.gravity.self_gravity import SelfGravity
 from engine.state.particles import Particles
 from tests.helpers.device import Array
@@ -20,6 +21,12 @@ def accelerations(solver: SelfGravity) -> Array:
     """Accelerations [m/s^2] of the solver's particles, shape [particle_count, 3]."""
     state = solver.particles.read("x", "mass")
     return solver.accelerations(state["x"], state["mass"])
+
+
+def opened(tree: BarnesHut, opening: float) -> BarnesHut:
+    """The same tree with another opening angle [-]: its kernels are compiled already."""
+    tree.opening[None] = opening
+    return tree
 
 
 def energy(solver: SelfGravity) -> float:

@@ -10,6 +10,18 @@ E0, E_IV, E_CV = 4.87e8, 4.72e6, 1.82e7
 SMALL_A, SMALL_B, ALPHA, BETA = 0.5, 1.5, 5.0, 5.0
 Y0, MU_I, Y_M, U_MELT = 1e7, 1.0, 3.5e9, 3.4e6
 
+FRICTION = {"sugiura2018": 0.839, "talk": 0.945}
+"""Coefficient of friction of rubble, mu_d [-], in each parameter set (section 4)."""
+
+MODULUS = {"sugiura2018": LONGITUDINAL, "talk": 9.0 * K * G / (3.0 * K + G)}
+"""Modulus [Pa] by which the largest tensile stress is a strain (section 5): of uniaxial strain, and Young's."""
+
+CRACK_SPEED = {"sugiura2018": 0.4, "talk": 0.5}
+"""Speed of a crack over that of longitudinal waves [-] (section 5)."""
+
+PER_FLAW = {"sugiura2018": True, "talk": False}
+"""Whether damage grows in proportion to the number of active flaws (section 5)."""
+
 
 def cold(mu: Array, E: Array) -> Array:
     """Pressure [Pa] of compressed or cold matter (section 2); mu = rho/rho0 - 1 keeps small strains exact."""

@@ -11,7 +11,7 @@ from engine.gravity.direct_sum import DirectSum
 from engine.scene.placement import sphere_points
 from engine.scene.scene import Gravity
 from tests.helpers.device import Array
-from tests.helpers.gravity import accelerations, energy, particles_at, relative_error
+from tests.helpers.gravity import accelerations, energy, opened, particles_at, relative_error
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
@@ -34,8 +34,9 @@ def clustered(count: int) -> Array:
 def test_a_vanishing_opening_gives_the_sum_over_all_pairs(points) -> None:
     particles = particles_at(points(1500))
     exact = accelerations(DirectSum(particles, RADIUS))
-    assert relative_error(BarnesHut(particles, RADIUS, 1e-9), exact).max() < 1e-11
-    assert relative_error(BarnesHut(particles, RADIUS, 0.5), exact).max() > 1e-5
+    tree = BarnesHut(particles, RADIUS, 1e-9)
+    assert relative_error(tree, exact).max() < 1e-11
+    assert relative_error(opened(tree, 0.5), exact).max() > 1e-5
 
 
 @pytest.mark.parametrize("points", [uniform, clustered])
@@ -77,11 +78,13 @@ def test_any_number_of_particles_will_do(count: int) -> None:
 
 def test_particles_in_one_place_or_in_a_line_will_do() -> None:
     line = np.outer(np.linspace(-1.0, 1.0, 300) ** 3, [1.0, 0.0, 0.0])
-    for x in (np.ones((100, 3)), np.concatenate([np.zeros((50, 3)), np.ones((50, 3))]), line):
-        particles = particles_at(x)
-        exact = accelerations(DirectSum(particles, RADIUS))
-        np.testing.assert_allclose(accelerations(BarnesHut(particles, RADIUS, 1e-9)), exact, rtol=1e-11, atol=1e-10)
-        difference = np.abs(accelerations(BarnesHut(particles, RADIUS, 0.5)) - exact)
+    particles = particles_at(line)
+    pairs, tree = DirectSum(particles, RADIUS), BarnesHut(particles, RADIUS, 1.0)
+    for x in (np.ones((300, 3)), np.concatenate([np.zeros((150, 3)), np.ones((150, 3))]), line):
+        particles.write({"x": x})
+        exact = accelerations(pairs)
+        np.testing.assert_allclose(accelerations(opened(tree, 1e-9)), exact, rtol=1e-11, atol=1e-10)
+        difference = np.abs(accelerations(opened(tree, 0.5)) - exact)
         assert np.median(difference) <= 5e-3 * np.abs(exact).mean()
 
 

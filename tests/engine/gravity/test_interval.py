@@ -56,6 +56,7 @@ def scene(interval: float) -> Scene:
 
 def follow(intervals: int) -> Orbit:
     """The orbit with so many intervals per turn."""
+    backend.start(threads=1)
     simulation = Simulation(scene(PERIOD / intervals))
     simulation.start()
     rows = []
@@ -70,7 +71,6 @@ def follow(intervals: int) -> Orbit:
 
 @pytest.fixture(scope="module")
 def orbits() -> tuple[Orbit, Orbit]:
-    backend.start(threads=1)
     return follow(32), follow(64)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from engine import PHYSICS_VERSION
+from engine.device import backend
 from engine.errors import JobError
 from engine.job.checkpoint import load_checkpoint, save_checkpoint
 from engine.job.directory import JobDirectory
@@ -89,11 +90,14 @@ def test_a_bare_scene_writes_all_variables_and_resumes_to_the_same_bits(tmp_path
         assert final[name].shape == (200,) and not final[name].any()
     assert not history["internal_energy"].any() and not history["gravitational_energy"].any()
 
+    backend.start(threads=1)
     job, first = JobDirectory(tmp_path), advance(started(given), 20)
     save_checkpoint(job, first, {})
+    expected = advance(first, 40).particles.read()
     assert not {"E", "b_minus_I", "damage_root", "acceleration"} & set(read_dataset(job.checkpoint).data_vars)
+    backend.start(threads=1)
     second = Simulation(given)
     assert load_checkpoint(job, second) == {}
-    for each in (first, second):
-        advance(each, 40)
-    assert_same_state(first, second)
+    found = advance(second, 40).particles.read()
+    for name, values in expected.items():
+        np.testing.assert_array_equal(found[name], values, err_msg=name)

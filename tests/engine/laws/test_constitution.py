@@ -5,11 +5,9 @@ from engine.laws.viscosity import Viscosity
 from engine.scene.scene import ViscosityCoefficients
 from engine.verification.material_point import MaterialPoint, unpacked
 from tests.helpers.device import Array, norm, rotations, traceless, worst
-from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, log_strain, strength_limit, tillotson
+from tests.helpers.oracle import FRICTION, LONGITUDINAL, RHO0, G, K, log_strain, strength_limit, tillotson
 
 pytestmark = pytest.mark.usefixtures("taichi")
-
-FRICTION = 0.839
 
 
 def strained(count: int, size: float, **parts: bool) -> tuple[MaterialPoint, Array]:
@@ -81,7 +79,7 @@ def test_yielding_reaches_the_strength_exactly_and_keeps_direction_and_volume():
     free, _ = strained(4000, 0.1)
     D = yielding["damage_root"] ** 3
     P = rest_pressure(free["j"])
-    Y = strength_limit(P, np.zeros(4000), D, FRICTION)
+    Y = strength_limit(P, np.zeros(4000), D, FRICTION["sugiura2018"])
     sqrt_J2, unlimited = norm(yielding.deviator) / np.sqrt(2.0), norm(free.deviator) / np.sqrt(2.0)
     assert (unlimited > Y).sum() > 1000 and (unlimited < Y).sum() > 100
     assert worst(sqrt_J2, np.minimum(Y, unlimited), unlimited + np.abs(P)) < 1e-13
@@ -94,7 +92,9 @@ def test_elastic_points_are_untouched_bit_for_bit():
     yielding, _ = strained(4000, 0.1, strength=True)
     free, _ = strained(4000, 0.1)
     P = rest_pressure(free["j"])
-    elastic = norm(free.deviator) / np.sqrt(2.0) < 0.999 * strength_limit(P, 0.0, free["damage_root"] ** 3, FRICTION)
+    elastic = norm(free.deviator) / np.sqrt(2.0) < 0.999 * strength_limit(
+        P, 0.0, free["damage_root"] ** 3, FRICTION["sugiura2018"]
+    )
     assert elastic.sum() > 100
     for name in ("b_minus_I", "tau", "E"):
         assert np.array_equal(yielding[name][elastic], free[name][elastic])

@@ -5,7 +5,7 @@ from engine.laws.flaws import Flaws, draw_flaws
 from engine.laws.fracture import Fracture, Unbreakable
 from engine.scene.scene import Sphere
 from tests.helpers.device import Array, compose, evaluate, rotations, worst
-from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K
+from tests.helpers.oracle import CRACK_SPEED, LONGITUDINAL, MODULUS, PER_FLAW, RHO0
 from tests.helpers.parameter_sets import rules_of
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -14,9 +14,6 @@ BODY = Sphere(radius=50e3, particles=500)
 CRACK_TIME = 3.0 * BODY.spacing / np.sqrt(LONGITUDINAL / RHO0)
 """Time [s] that a longitudinal wave needs for R_s."""
 
-MODULUS = {"sugiura2018": LONGITUDINAL, "talk": 9.0 * K * G / (3.0 * K + G)}
-SPEED = {"sugiura2018": 0.4, "talk": 0.5}
-PER_FLAW = {"sugiura2018": True, "talk": False}
 SETS = pytest.mark.parametrize("name", list(MODULUS))
 
 
@@ -36,7 +33,7 @@ def oracle(name: str, flaws: Flaws, root: Array, stress: Array, P: Array, dt: Ar
     active = np.array([(eps < e).sum() for eps, e in zip(own, strain, strict=True)])
     total = np.array([len(eps) for eps in own])
     cracks = active if PER_FLAW[name] else np.minimum(active, 1)
-    grown = root + cracks * SPEED[name] / CRACK_TIME * dt
+    grown = root + cracks * CRACK_SPEED[name] / CRACK_TIME * dt
     return np.asarray(np.maximum(root, np.minimum(grown, (active / np.maximum(total, 1)) ** (1.0 / 3.0))))
 
 
@@ -90,7 +87,7 @@ def test_one_crack_among_four_grows_at_its_speed_up_to_its_share(name):
     p = np.array([0, 1, 0, 1], dtype=np.int32)
     tension = np.full(4, -2e-6 * MODULUS[name])
     grown = grow(name, flaws, np.zeros(4), np.zeros((4, 3, 3)), tension, dt, p)
-    one = 0.01 * SPEED[name]
+    one = 0.01 * CRACK_SPEED[name]
     several = 3.0 * one if PER_FLAW[name] else one
     # damage is the cube of what is integrated, and its cap the share of open flaws
     assert worst(grown**3, np.array([one**3, several**3, 0.25, 0.75]), 1.0) < 1e-15
@@ -109,7 +106,7 @@ def test_a_flaw_opens_only_beyond_its_strain(name):
     tension = -MODULUS[name] * 1e-6 * np.array([1.0 - 1e-12, 1.0 + 1e-12])
     step, first = np.full(2, CRACK_TIME), np.zeros(2, dtype=np.int32)
     shut, opened = grow(name, flaws, np.zeros(2), np.zeros((2, 3, 3)), tension, step, first)
-    assert shut == 0.0 and opened == pytest.approx(SPEED[name], rel=1e-15)
+    assert shut == 0.0 and opened == pytest.approx(CRACK_SPEED[name], rel=1e-15)
 
 
 def test_unbreakable_matter_keeps_its_damage():

@@ -4,12 +4,11 @@ import pytest
 from engine.laws.strength import Strength, Unlimited, return_factor
 from engine.scene.material import named
 from tests.helpers.device import Array, evaluate, worst
-from tests.helpers.oracle import U_MELT, strength_limit
+from tests.helpers.oracle import FRICTION, U_MELT, strength_limit
 from tests.helpers.parameter_sets import friction_of
 
 pytestmark = pytest.mark.usefixtures("taichi")
 
-FRICTION = {"sugiura2018": 0.839, "talk": 0.945}
 SETS = list(FRICTION)
 
 

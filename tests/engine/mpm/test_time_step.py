@@ -1,16 +1,15 @@
 import numpy as np
 import pytest
 
+from engine.device import backend
 from engine.simulation.simulation import Simulation
-from tests.helpers.device import Array
 from tests.helpers.oracle import LONGITUDINAL, RHO0, G, squared_sound_speed
 from tests.helpers.scenes import RUBBLE, body, one_step, scene, started
-
-pytestmark = pytest.mark.usefixtures("taichi")
 
 LONGITUDINAL_SPEED = float(np.sqrt(LONGITUDINAL / RHO0))
 
 
+@pytest.mark.usefixtures("taichi")
 def test_the_time_step_obeys_the_tightest_of_its_limits():
     given = scene(body())
     simulation, dx = started(given), given.dx
@@ -28,6 +27,7 @@ def test_the_time_step_obeys_the_tightest_of_its_limits():
         assert 1.0 / simulation.clock.rate[None] == pytest.approx(expected, rel=1e-2)
 
 
+@pytest.mark.usefixtures("taichi")
 def test_strong_gravity_shortens_the_time_step():
     given = scene(body(), physics={**RUBBLE, "uniform_gravity": (0.0, -1e4, 0.0)})
     # at rest after one step
@@ -37,6 +37,7 @@ def test_strong_gravity_shortens_the_time_step():
     assert 1.0 / simulation.clock.rate[None] == pytest.approx(np.sqrt(given.dx / 1e4), rel=1e-2)
 
 
+@pytest.mark.usefixtures("taichi")
 def test_viscosity_and_the_courant_number_shorten_the_time_step():
     viscous = {"fracture": None, "gravity": None, "viscosity": {"shear": 1e9, "bulk": 2e9}}
     given = scene(body(), physics=viscous, numerics={"cfl": 0.2})
@@ -45,21 +46,7 @@ def test_viscosity_and_the_courant_number_shorten_the_time_step():
     assert 1.0 / simulation.clock.rate[None] == pytest.approx(given.dx**2 / (6.0 * 3e9), rel=1e-4)
 
 
-def lonely(**state: Array) -> Simulation:
-    """One particle that flies at 500 m/s."""
-    return started(scene(body(particles=1, velocity=(0.0, 300.0, 400.0))), **state)
-
-
-@pytest.mark.parametrize("stress", [[1e11, 0.0, 0.0, 0.0, 0.0, 0.0], [-4e10, 2e10, 0.0, 3e10, 4e10, -5e10]])
-def test_stress_that_nothing_holds_shortens_the_first_and_all_further_time_steps(stress):
-    """It must not deform the particle by more than 0.3: 4 dt^2 |tau| / (rho0 dx^2), also when others come near."""
-    norm = np.sqrt(np.sum(np.square(stress) * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
-    simulation = lonely(tau=np.array([stress]))
-    expected = simulation.scene.dx * np.sqrt(0.3 * RHO0 / (4.0 * norm))
-    for _ in range(2):
-        assert one_step(simulation) == pytest.approx(expected, rel=1e-12)
-
-
+@pytest.mark.usefixtures("taichi")
 def test_stress_inside_matter_shortens_the_time_step_too():
     """Matter that is everywhere at the same high pressure does not move, and yet could."""
     cells = {"size": (4.0, 4.0, 4.0), "lattice": (8, 8, 8), "position": (2.0, 2.0, 2.0)}
@@ -72,18 +59,36 @@ def test_stress_inside_matter_shortens_the_time_step_too():
     assert 1.0 / simulation.clock.rate[None] == pytest.approx(np.sqrt(0.3 * RHO0 / (4.0 * norm)), rel=1e-9)
 
 
-@pytest.mark.parametrize(("j", "E"), [(0.0, 0.0), (-0.4, 0.0), (0.2, 3e7), (-0.3, 1e8)])
-def test_a_lonely_particle_counts_with_the_sound_speed_of_its_state(j, E):
-    simulation = lonely(j=np.array([j]), E=np.array([E]))
-    one_step(simulation)
-    c2 = squared_sound_speed(np.array([1.0 / (1.0 + j) - 1.0]), np.array([E]))[0]
-    speed = np.sqrt(c2 + 4.0 / 3.0 * G / RHO0) + 500.0
-    assert 1.0 / simulation.clock.rate[None] == pytest.approx(0.5 * simulation.scene.dx / speed, rel=1e-9)
-
-
 def test_a_scene_begins_with_the_step_it_says():
     """Also where fast rotation, not sound, limits it."""
     for spin in (0.0, 10.0):
+        backend.start(threads=1)
         simulation = started(scene(body(spin=(0.0, 0.0, spin))))
         assert one_step(simulation) == simulation.first_dt
     assert simulation.first_dt == pytest.approx(0.3 / (np.sqrt(2.0) * 10.0), rel=1e-12)
+
+
+@pytest.fixture(scope="module")
+def lonely() -> Simulation:
+    """One particle that flies at 500 m/s, to be started in any state; the tests that use it stand together."""
+    backend.start(threads=1)
+    return Simulation(scene(body(particles=1, velocity=(0.0, 300.0, 400.0))))
+
+
+@pytest.mark.parametrize("stress", [[1e11, 0.0, 0.0, 0.0, 0.0, 0.0], [-4e10, 2e10, 0.0, 3e10, 4e10, -5e10]])
+def test_stress_that_nothing_holds_shortens_the_first_and_all_further_time_steps(lonely, stress):
+    """It must not deform the particle by more than 0.3: 4 dt^2 |tau| / (rho0 dx^2), also when others come near."""
+    norm = np.sqrt(np.sum(np.square(stress) * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
+    lonely.start(tau=np.array([stress]))
+    expected = lonely.scene.dx * np.sqrt(0.3 * RHO0 / (4.0 * norm))
+    for _ in range(2):
+        assert one_step(lonely) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("j", "E"), [(0.0, 0.0), (-0.4, 0.0), (0.2, 3e7), (-0.3, 1e8)])
+def test_a_lonely_particle_counts_with_the_sound_speed_of_its_state(lonely, j, E):
+    lonely.start(j=np.array([j]), E=np.array([E]))
+    one_step(lonely)
+    c2 = squared_sound_speed(np.array([1.0 / (1.0 + j) - 1.0]), np.array([E]))[0]
+    speed = np.sqrt(c2 + 4.0 / 3.0 * G / RHO0) + 500.0
+    assert 1.0 / lonely.clock.rate[None] == pytest.approx(0.5 * lonely.scene.dx / speed, rel=1e-9)

@@ -6,7 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from engine.cli import application
+from engine.errors import ExitCode
 from engine.job.checkpoint import save_checkpoint
 from engine.job.directory import JobDirectory
 from engine.profile.report import size
@@ -61,9 +64,9 @@ def test_a_job_is_explained_from_its_checkpoint_and_left_alone(tmp_path, finishe
 def test_what_is_no_scene_is_refused(tmp_path, content):
     (tmp_path / "scene.toml").write_text(content)
     for path in (tmp_path, tmp_path / "scene.toml"):
-        result = explain(path)
-        assert result.returncode == 2
-        assert "scene.toml" in result.stderr and "Traceback" not in result.stderr
+        result = CliRunner().invoke(application, ["explain", str(path)])
+        assert result.exit_code == ExitCode.BAD_INPUT
+        assert "scene.toml" in result.output and "Traceback" not in result.output
 
 
 def test_sizes_read_easily():

@@ -10,6 +10,7 @@ import pytest
 
 from campaigns.job_state import TrackedJob, status_of
 from campaigns.progress import line
+from engine.device import backend
 from engine.errors import Fault, GuardFault, stop
 from engine.job.checkpoint import save_checkpoint
 from engine.job.directory import JobDirectory, Status
@@ -223,6 +224,7 @@ def test_a_run_that_goes_bad_keeps_its_checkpoint(tmp_path: Path, taichi: None) 
         job, simulation, {"history_due": given.start_time, "snapshot_due": np.inf, "wall_time": 0.0, "cpu_time": 0.0}
     )
     before = job.checkpoint.read_bytes()
+    backend.start(threads=1)
     status = Run(given, job, Options(checkpoint_interval=0.0)).to_end()
     assert status.state == "failed" and job.status().fault == status.fault
     assert status.fault is not None and status.reason == str(status.fault)

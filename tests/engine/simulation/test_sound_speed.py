@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from engine.device import backend
 from engine.scene.collision import Collision
 from engine.scene.material import named
 from engine.scene.scene import Physics, Scene, Sphere
@@ -27,9 +28,12 @@ def test_all_waves_travel_at_the_factor_and_strength_stays():
     assert BASALT.slowed(1.0) == BASALT
 
 
-@pytest.mark.usefixtures("taichi")
 def test_a_wave_in_a_column_takes_twice_as_long_at_half_the_speed():
-    fast, slow = (StandingWave(16, sound_speed=factor).measure(Harness()) for factor in (1.0, 0.5))
+    measured = []
+    for factor in (1.0, 0.5):
+        backend.start(threads=1)  # kernels are the same, and found where the first run left them
+        measured.append(StandingWave(16, sound_speed=factor).measure(Harness()))
+    fast, slow = measured
     assert fast.speed == pytest.approx(BASALT.longitudinal_speed, rel=0.02)
     # the error of the scheme scales along, but for the motion in the Courant condition
     assert slow.speed == pytest.approx(0.5 * fast.speed, rel=1e-9)

@@ -10,14 +10,11 @@ from engine.scene.scene import Sphere
 from engine.verification.material_point import MaterialPoint
 from engine.verification.problems.bar import Bar, Pull
 from tests.helpers.device import Array, worst
-from tests.helpers.oracle import LONGITUDINAL, RHO0, G, K, strength_limit, tillotson
+from tests.helpers.oracle import CRACK_SPEED, FRICTION, LONGITUDINAL, MODULUS, RHO0, G, strength_limit, tillotson
 from tests.helpers.parameter_sets import rules_of
 
 BODY = Sphere(radius=1.0, particles=200)
 STEPS = 600
-FRICTION = {"sugiura2018": 0.839, "talk": 0.945}
-MODULUS = {"sugiura2018": LONGITUDINAL, "talk": 9.0 * K * G / (3.0 * K + G)}
-CRACK_SPEED = {"sugiura2018": 0.4, "talk": 0.5}
 
 
 def drawn(name: str) -> Flaws:
