@@ -14,7 +14,7 @@ from engine.device import backend
 from engine.errors import Fault, GuardFault, stop
 from engine.job.checkpoint import save_checkpoint
 from engine.job.directory import JobDirectory, Status
-from engine.job.session import Options, Run
+from engine.job.session import Options, Session
 from engine.scene.collision import Collision
 from engine.scene.scene import Physics, Scene, Wall
 from engine.simulation.bounds import energy_growth, speed_scale
@@ -225,7 +225,7 @@ def test_a_run_that_goes_bad_keeps_its_checkpoint(tmp_path: Path, taichi: None) 
     )
     before = job.checkpoint.read_bytes()
     backend.start(threads=1)
-    status = Run(given, job, Options(checkpoint_interval=0.0)).to_end()
+    status = Session(given, job, Options(checkpoint_interval=0.0)).to_end()
     assert status.state == "failed" and job.status().fault == status.fault
     assert status.fault is not None and status.reason == str(status.fault)
     assert job.checkpoint.read_bytes() == before and not job.previous_checkpoint.exists()
