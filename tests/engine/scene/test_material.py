@@ -30,7 +30,7 @@ def test_basalt_is_that_of_sugiura_2018():
 
 def test_ice_carries_sound_at_the_speed_of_ice_and_has_no_constant_of_basalt():
     ice = named("ice")
-    # longitudinal waves in polycrystalline ice Ih travel at 3.8-3.9 km/s, here without shear stiffening at 255 K
+    # longitudinal waves in polycrystalline ice Ih travel at 3.8 to 3.9 km/s
     assert ice.longitudinal_speed == pytest.approx(3800.0, rel=0.03)
     assert [key for key in MISSING_OF_ICE if getattr(ice, key) is not None] == []
 
