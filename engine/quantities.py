@@ -61,7 +61,7 @@ HISTORY = {
     "largest_speed": Quantity("highest speed of a particle", "m s-1"),
     "largest_compression": Quantity("highest rho/rho0 of a particle", "1"),
     "damaged_fraction": Quantity("mean damage of all particles", "1"),
-    "isolated": Quantity("particles that share no block with another", "1"),
+    "isolated": Quantity("particles with no other in their block or in one beside it", "1"),
 }
 """Variables of history.nc."""
 

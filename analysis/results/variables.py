@@ -16,7 +16,7 @@ _FLAG = "1 yes, 0 no, NaN unknown"
 _SCALES = {
     "mass": "the mass at the start",
     "momentum": "sum m |v| at the start",
-    "angular_momentum": "its magnitude at the start; NaN for a head-on impact",
+    "angular_momentum": "its magnitude at the start; NaN without any",
     "total_energy": "the kinetic energy at the start",
 }
 """What the change of each conserved quantity is divided by."""

@@ -11,7 +11,8 @@ class GravityField(Protocol):
     def at(self, p):
         """Return the acceleration of particle p [m/s^2].
 
-        A device function. The transfer calls it in every step: from particles to the grid, and for ballistic particles.
+        A device function. The transfer scheme calls it in every step, for the momentum and for the limits of the time
+        step.
         """
 
     def energy(self, x: Vectors, mass: Scalars) -> float:

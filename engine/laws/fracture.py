@@ -32,18 +32,18 @@ class Fracture:
         self.strain = filled(Real, flaws.strain)
 
     @ti.func
-    def grow(self, root, s, P, dt, p, body):
-        """Return root + n rate dt, at most (n_open / n_all)^(1/3), where a flaw of particle p is active.
+    def grow(self, root, s, P, dt, number, body):
+        """Return root + n rate dt, at most (n_open / n_all)^(1/3), where a flaw of the particle is active.
 
         n is the number of active flaws, or 1, by the rule of the parameter set.
         """
         m = self.table[body]
-        result, first, total = root, self.first[p], self.first[p + 1] - self.first[p]
+        result, first, total = root, self.first[number], self.first[number + 1] - self.first[number]
         if root < 1.0 and total > 0:
             # no eigenvalue of a deviator exceeds sqrt(2/3) of its norm: most particles are far from their first flaw
             bound = ti.sqrt(2.0 / 3.0 * norm_squared(s)) - P
             if bound >= self.strain[first] * m.modulus:
-                active = self._active((largest_eigenvalue(s) - P) / m.modulus, p)
+                active = self._active((largest_eigenvalue(s) - P) / m.modulus, number)
                 if active > 0:
                     cracks = active if ti.static(self.per_flaw) else 1
                     cap = (ti.cast(active, Real) / total) ** (1.0 / 3.0)
@@ -51,12 +51,12 @@ class Fracture:
         return result
 
     @ti.func
-    def _active(self, strain, p):
-        """Number of flaws of particle p that are active at a strain [-]."""
-        flaw, end = self.first[p], self.first[p + 1]
+    def _active(self, strain, number):
+        """Number of flaws of a particle that are active at a strain [-]."""
+        flaw, end = self.first[number], self.first[number + 1]
         while flaw < end and self.strain[flaw] < strain:
             flaw += 1
-        return flaw - self.first[p]
+        return flaw - self.first[number]
 
 
 @ti.data_oriented
@@ -64,7 +64,7 @@ class Unbreakable:
     """Constant damage."""
 
     @ti.func
-    def grow(self, root, s, P, dt, p, body):
+    def grow(self, root, s, P, dt, number, body):
         """Return `root`."""
         return root
 

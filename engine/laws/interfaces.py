@@ -57,7 +57,7 @@ class DamageLaw(Protocol):
 class GrowthLaw(Protocol):
     """Growth of damage during a step (engine/physics.md, section 5)."""
 
-    def grow(self, root, s, P, dt, p, body):
+    def grow(self, root, s, P, dt, number, body):
         """Return the cube root of D after a step; it never falls.
 
         Args:
@@ -65,7 +65,7 @@ class GrowthLaw(Protocol):
             s: deviatoric Cauchy stress [Pa].
             P: pressure [Pa].
             dt: time step [s].
-            p: number of the particle in the scene, which does not change when particles are sorted.
+            number: of the particle in the scene, which does not change when particles are sorted.
             body: index of the body.
         """
 

@@ -20,11 +20,6 @@ ROUNDING = max(1e-9, 100.0 * EPSILON)
 """Relative difference of energies that are equal but for round-off."""
 
 
-def affine_inertia(dx: float) -> float:
-    """Return the moment of inertia per mass [m^2] of the affine motion of a particle, at a grid spacing dx [m]."""
-    return SECOND_MOMENT * dx**2
-
-
 @ti.data_oriented
 class Apic:
     """Momentum with its gradient, and stress by the moving-least-squares gradient.
@@ -43,9 +38,13 @@ class Apic:
         self.particles, self.constitution, self.gravity = particles, constitution, gravity
         self.walls, self.clock = walls, clock
 
+    def inertia(self, dx: float) -> float:
+        """Return m2 dx^2 [m^2], with the second moment m2 of the spline."""
+        return SECOND_MOMENT * dx**2
+
     @ti.func
     def momentum(self, p, dx):
-        """Return mass, momentum and affine momentum: m, m (v + dt g), m dx C - dt V0 tau/(m2 dx)."""
+        """Return m [kg], m (v + dt g) and m dx C - dt V0 tau/(m2 dx) [kg m/s]."""
         mass, dt = self.particles.mass[p], self.clock.dt[None]
         volume = mass / self.constitution.rho0(p)
         stress = dt * volume / (SECOND_MOMENT * dx) * unpack(self.particles.tau[p])

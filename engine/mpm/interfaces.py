@@ -6,11 +6,20 @@ from typing import Protocol
 class Scheme(Protocol):
     """What a particle gives to the nodes of the grid and what it takes from them (engine/physics.md, section 1).
 
-    All methods are device functions. The stencil adds over particles and averages over nodes what a scheme names.
+    Device functions but for `inertia`. Nodes keep one velocity, that after the grid update.
     """
 
+    def inertia(self, dx: float) -> float:
+        """Return the moment of inertia per mass [m^2] of the affine motion of a particle; zero where it has none.
+
+        Called on the host, for the conserved quantities.
+
+        Args:
+            dx: grid spacing [m].
+        """
+
     def momentum(self, p, dx):
-        """Return mass, momentum and affine momentum of particle p; called once a step, from particles to the grid.
+        """Return mass [kg], momentum [kg m/s] and affine momentum [kg m/s], shape [3, 3]; called once a step, in p2g.
 
         The node at distance r, in cells, and of weight w receives w (momentum + affine r) and w mass.
 
@@ -20,7 +29,9 @@ class Scheme(Protocol):
         """
 
     def advance(self, p, v, L, dx):
-        """Move and deform particle p over the step and return its limits of the next; called last in a step.
+        """Move and deform particle p over the step; called once a step, in g2p.
+
+        Returns the `Limits` of the next time step (engine/mpm/time_step.py).
 
         Args:
             p: index of the particle.
@@ -30,7 +41,7 @@ class Scheme(Protocol):
         """
 
     def advance_ballistic(self, p, dx):
-        """Do the same for a particle that shares no node with another."""
+        """Move particle p, which shares no node with another, and return its `Limits`; arguments as `advance`."""
 
 
 class Boundary(Protocol):

@@ -45,10 +45,11 @@ class Stencil:
         blocks: number of blocks to make room for.
 
     Attributes:
+        atomic: whether several threads add to one node at once, one particle each, as on a GPU.
         nodes: every node of every copy; momentum [kg m/s] and mass [kg] after the scatter, velocity [m/s] and mass
             after the grid update.
         shared_count: particles whose block, or one beside it, contains others; they come first in memory.
-        ballistic_count: particles alone in their block and in all blocks beside it.
+        ballistic_count: particles with no other in their block nor in any block beside it.
     """
 
     def __init__(self, particles: Particles, dx: float, blocks: int) -> None:
@@ -115,7 +116,7 @@ class Stencil:
 
     @ti.func
     def add(self, n, value):
-        """Add a value to node n; other threads may do so at the same time on a GPU alone."""
+        """Add a value to node n."""
         if ti.static(self.atomic):
             ti.atomic_add(self.nodes[n], value)
         else:

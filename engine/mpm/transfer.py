@@ -7,7 +7,7 @@ the CPU one thread works on one block at a time.
 import taichi as ti
 
 from engine.constants import BLOCK_EDGE
-from engine.device.backend import TASK, Real, on_gpu, vec3, vec4
+from engine.device.backend import TASK, Real, vec3, vec4
 from engine.mpm.interfaces import Boundary, Scheme
 from engine.mpm.stencil import COPY, TILE, Stencil, corner_coordinates, in_copy, node_in_tile
 from engine.mpm.time_step import Limits, rate_of, tightest
@@ -28,7 +28,6 @@ class Transfer:
 
     def __init__(self, stencil: Stencil, scheme: Scheme, walls: Boundary, clock: Clock, cfl: float) -> None:
         self.stencil, self.scheme, self.walls, self.clock = stencil, scheme, walls, clock
-        self.by_block = not on_gpu()
         self.cfl = ti.field(Real, ())
         self.cfl[None] = cfl
 
@@ -43,7 +42,7 @@ class Transfer:
         """Scatter mass and momentum, with the momentum that stress adds over the step (p2g)."""
         self.clock.begin_step()
         blocks = self.stencil.block_count[None] * self.clock.running[None]
-        if ti.static(self.by_block):
+        if ti.static(not self.stencil.atomic):
             for t in range(blocks * TASK):
                 if t & (TASK - 1) == 0:
                     self.scatter_block(t // TASK)
@@ -75,7 +74,7 @@ class Transfer:
     @ti.kernel
     def grid_to_particles(self):
         """Move and deform every particle with the velocity of its nodes (g2p)."""
-        if ti.static(self.by_block):
+        if ti.static(not self.stencil.atomic):
             for t in range(self.stencil.block_count[None] * self.clock.running[None] * TASK):
                 if t & (TASK - 1) == 0:
                     self.report(self.gather_block(t // TASK))

@@ -29,7 +29,7 @@ class Part:
     kernels: tuple[str, ...]
 
     @property
-    def left_out(self) -> bool:
+    def is_empty(self) -> bool:
         """Whether it has neither fields nor kernels of its own: physics left out, or a combination of other parts."""
         return not (self.fields or self.kernels)
 

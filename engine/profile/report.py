@@ -32,7 +32,7 @@ def _table(result: Measurement) -> Table:
     table = Table("part", "is a", "fields", "memory", "kernels", "calls", "ms per step", "CPU")
     for column in table.columns[3:4] + table.columns[5:]:
         column.justify = "right"
-    parts = [part for part in parts_of(result.simulation) if not part.left_out]
+    parts = [part for part in parts_of(result.simulation) if not part.is_empty]
     for part in parts:
         lines = zip_longest(_memory(part), _kernels(result, part), fillvalue=())
         names = chain([(part.name, type(part.content).__name__)], repeat(("", "")))

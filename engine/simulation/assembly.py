@@ -17,11 +17,13 @@ from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
-from engine.mpm.interfaces import Boundary
+from engine.mpm.apic import Apic
+from engine.mpm.interfaces import Boundary, Scheme
 from engine.mpm.walls import NoWalls, Walls
 from engine.scene.scene import Scene
 from engine.scene.tillotson import TillotsonParameters
 from engine.simulation.initial_conditions import all_flaws
+from engine.state.clock import Clock
 from engine.state.particles import Particles
 
 
@@ -60,6 +62,13 @@ def gravity(scene: Scene, particles: Particles) -> GravityField:
 def walls(scene: Scene) -> Boundary:
     """Return the rigid planes of a scene."""
     return Walls(scene.physics.walls) if scene.physics.walls else NoWalls()
+
+
+def scheme(
+    particles: Particles, constitution: Constitution, gravity: GravityField, walls: Boundary, clock: Clock
+) -> Scheme:
+    """Return what particles give to the grid and take from it."""
+    return Apic(particles, constitution, gravity, walls, clock)
 
 
 def _equation_of_state(scene: Scene) -> EquationOfStateLaw:

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.arrays import Scalars, Vector
-from engine.mpm.apic import affine_inertia
 from engine.state.particles import Arrays
 
 Row = dict[str, NDArray[np.float64]]
@@ -46,18 +45,19 @@ class Totals:
         return self.kinetic_energy + self.affine_kinetic_energy + self.internal_energy + self.gravitational_energy
 
 
-def totals(state: Arrays, dx: float, elastic: Scalars, gravitational_energy: float, half_step_work: float) -> Totals:
+def totals(
+    state: Arrays, inertia: float, elastic: Scalars, gravitational_energy: float, half_step_work: float
+) -> Totals:
     """Return the conserved quantities of a state.
 
     Args:
         state: fields x, v, C, E and mass of every particle.
-        dx: grid spacing [m].
+        inertia: moment of inertia per mass of the affine motion of a particle [m^2].
         elastic: elastic energy of every particle [J], shape [particle_count].
         gravitational_energy: potential energy of gravity [J].
         half_step_work: work of stress and gravity in half the next step [J].
     """
     m, x, v, C, E = (state[name] for name in ("mass", "x", "v", "C", "E"))
-    inertia = affine_inertia(dx)
     skew = np.stack([C[:, 2, 1] - C[:, 1, 2], C[:, 0, 2] - C[:, 2, 0], C[:, 1, 0] - C[:, 0, 1]], axis=1)
     return Totals(
         mass=float(np.sum(m)),

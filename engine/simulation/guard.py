@@ -113,7 +113,7 @@ class Guard:
         growth = energy_growth(self.scene, row, self.start)
         if keeps_energy(self.scene) and not -1.0 <= growth <= ENERGY_GROWTH:
             allowed = f"between -1 and {ENERGY_GROWTH:g}"
-            quantity = "growth of total energy, as a share of all energies"
+            quantity = "growth of total energy, as a fraction of all energies"
             raise stop(quantity, growth, allowed, time, advice=SMALLER_STEPS)
 
 

@@ -12,7 +12,6 @@ from engine.constants import BLOCK_EDGE
 from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity.self_gravity import SelfGravity
-from engine.mpm.apic import Apic
 from engine.mpm.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
 from engine.mpm.stencil import Stencil
 from engine.mpm.time_step import first_rate
@@ -69,6 +68,7 @@ class Simulation:
         self.gravity = assembly.gravity(scene, self.particles)
         self.constitution = assembly.constitution(scene, self.particles)
         self.walls = assembly.walls(scene)
+        self.scheme = assembly.scheme(self.particles, self.constitution, self.gravity, self.walls, self.clock)
         self._make_room(scene.particles // 8)
         self.events = Events(gravity_due=scene.start_time if physics.gravity else math.inf)
 
@@ -156,8 +156,7 @@ class Simulation:
 
     def _make_room(self, blocks: int) -> None:
         self.stencil = Stencil(self.particles, self.scene.dx, blocks)
-        scheme = Apic(self.particles, self.constitution, self.gravity, self.walls, self.clock)
-        self.transfer = Transfer(self.stencil, scheme, self.walls, self.clock, self.scene.numerics.cfl)
+        self.transfer = Transfer(self.stencil, self.scheme, self.walls, self.clock, self.scene.numerics.cfl)
 
     def _handle_events(self) -> None:
         if self.clock.moved_out[None]:
@@ -214,7 +213,8 @@ class Simulation:
         bulk = np.array([material.eos.bulk_modulus() for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
         elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, rho0, self.next_dt)
-        return totals(state, self.scene.dx, elastic, self.gravity.energy(state["x"], state["mass"]), work)
+        inertia, gravitational = self.scheme.inertia(self.scene.dx), self.gravity.energy(state["x"], state["mass"])
+        return totals(state, inertia, elastic, gravitational, work)
 
     def rho0(self, state: Arrays) -> Scalars:
         """Return the reference density of every particle [kg/m^3], shape [particle_count].

@@ -69,26 +69,26 @@ def test_a_scene_begins_with_the_step_it_says():
 
 
 @pytest.fixture(scope="module")
-def lonely() -> Simulation:
+def ballistic() -> Simulation:
     """One particle that flies at 500 m/s, to be started in any state; the tests that use it stand together."""
     backend.start(threads=1)
     return Simulation(scene(body(particles=1, velocity=(0.0, 300.0, 400.0))))
 
 
 @pytest.mark.parametrize("stress", [[1e11, 0.0, 0.0, 0.0, 0.0, 0.0], [-4e10, 2e10, 0.0, 3e10, 4e10, -5e10]])
-def test_stress_that_nothing_holds_shortens_the_first_and_all_further_time_steps(lonely, stress):
+def test_stress_that_nothing_holds_shortens_the_first_and_all_further_time_steps(ballistic, stress):
     """It must not deform the particle by more than 0.3: 4 dt^2 |tau| / (rho0 dx^2), also when others come near."""
     norm = np.sqrt(np.sum(np.square(stress) * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
-    lonely.start(tau=np.array([stress]))
-    expected = lonely.scene.dx * np.sqrt(0.3 * RHO0 / (4.0 * norm))
+    ballistic.start(tau=np.array([stress]))
+    expected = ballistic.scene.dx * np.sqrt(0.3 * RHO0 / (4.0 * norm))
     for _ in range(2):
-        assert one_step(lonely) == pytest.approx(expected, rel=1e-12)
+        assert one_step(ballistic) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(("j", "E"), [(0.0, 0.0), (-0.4, 0.0), (0.2, 3e7), (-0.3, 1e8)])
-def test_a_lonely_particle_counts_with_the_sound_speed_of_its_state(lonely, j, E):
-    lonely.start(j=np.array([j]), E=np.array([E]))
-    one_step(lonely)
+def test_a_lonely_particle_counts_with_the_sound_speed_of_its_state(ballistic, j, E):
+    ballistic.start(j=np.array([j]), E=np.array([E]))
+    one_step(ballistic)
     c2 = squared_sound_speed(np.array([1.0 / (1.0 + j) - 1.0]), np.array([E]))[0]
     speed = np.sqrt(c2 + 4.0 / 3.0 * G / RHO0) + 500.0
-    assert 1.0 / lonely.clock.rate[None] == pytest.approx(0.5 * lonely.scene.dx / speed, rel=1e-9)
+    assert 1.0 / ballistic.clock.rate[None] == pytest.approx(0.5 * ballistic.scene.dx / speed, rel=1e-9)

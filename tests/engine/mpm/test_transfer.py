@@ -80,7 +80,7 @@ def cloud() -> Simulation:
 
 @pytest.mark.parametrize("spread", [0.3, 4.0, 8.0])
 def test_one_step_equals_a_dense_grid(cloud, spread):
-    """Dense, loose and mostly lonely clouds with any velocity, stress and gravity."""
+    """Dense, loose and mostly ballistic clouds with any velocity, stress and gravity."""
     generator = np.random.default_rng(1)
     count, given = CLOUD, cloud.scene
     state = {

@@ -32,7 +32,7 @@ def test_kernels_are_found_also_those_of_a_base_class() -> None:
 
 def test_a_part_that_a_scene_leaves_out_has_neither_fields_nor_kernels() -> None:
     parts = {part.name: part for part in parts_of(started(scene(body())))}
-    assert {name for name in ("gravity", "viscosity", "walls", "shear", "transfer") if parts[name].left_out} == {
+    assert {name for name in ("gravity", "viscosity", "walls", "shear", "transfer") if parts[name].is_empty} == {
         "gravity",
         "viscosity",
         "walls",

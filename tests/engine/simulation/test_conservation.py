@@ -22,8 +22,8 @@ def pair() -> Arrays:
 
 
 def test_totals_of_two_particles() -> None:
-    """The affine part adds I w with I = m dx^2/4 about each axis of the gradient: here 2 (3 kg 4 m^2/4) 2 rad/s."""
-    found = totals(pair(), dx=2.0, elastic=np.array([1.0, 2.0]), gravitational_energy=-7.0, half_step_work=0.5)
+    """The affine part adds I w, with I per mass 1 m^2, about each axis of the gradient: here 2 (3 kg 1 m^2) 2 rad/s."""
+    found = totals(pair(), inertia=1.0, elastic=np.array([1.0, 2.0]), gravitational_energy=-7.0, half_step_work=0.5)
     assert found.mass == 4.0
     assert found.momentum == pytest.approx([0.0, 2.0, 1.0])
     assert found.angular_momentum == pytest.approx([0.0, 3.0, 6.0 + 12.0 + 12.0])
@@ -34,7 +34,7 @@ def test_totals_of_two_particles() -> None:
 
 
 def test_a_row_has_the_totals_their_sum_and_what_is_added() -> None:
-    found = totals(pair(), 2.0, np.zeros(2), 0.0, 0.0)
+    found = totals(pair(), 1.0, np.zeros(2), 0.0, 0.0)
     row = as_row(found, time=5.0)
     assert row["total_energy"] == found.total_energy and row["time"] == 5.0
     assert row["momentum"].shape == (3,) and all(values.dtype == np.float64 for values in row.values())

@@ -47,7 +47,7 @@ def state_of(given: Scene) -> Arrays:
 
 
 def row_of(state: Arrays, gravity: float = 0.0) -> Row:
-    return as_row(totals(state, 1.0, np.zeros(len(state["mass"])), gravity, 0.0), time=5.0)
+    return as_row(totals(state, 0.25, np.zeros(len(state["mass"])), gravity, 0.0), time=5.0)
 
 
 def guard_of(given: Scene) -> tuple[Guard, Arrays]:
