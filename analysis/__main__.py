@@ -9,10 +9,10 @@ import xarray as xr
 from analysis.accuracy.report import write_accuracy
 from analysis.remnant.fragments import clumps_of
 from analysis.remnant.outcome import latest, measure
+from analysis.remnant.variables import OUTCOMES
 from analysis.report.products import plots as draw
 from analysis.results.collect import collect as collect_results
 from analysis.results.tables import printed, reasons, shape_table, unresolved
-from analysis.results.variables import OUTCOMES
 from engine.errors import ExitCode, JobError, RunFault, SceneError, in_words
 from engine.job.directory import JobDirectory, JobState
 

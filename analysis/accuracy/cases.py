@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from analysis.campaign import NONE, Scalar, parameters
+from analysis.results.variables import NONE, Attribute, parameters
 from campaigns.campaign import KeptCampaign
 from engine.errors import SceneError
 
@@ -27,7 +27,7 @@ class VariedCase:
     """
 
     setting: str
-    value: Scalar
+    value: Attribute
     particles: int
 
 
@@ -48,13 +48,13 @@ def cases(campaign: KeptCampaign) -> dict[str, VariedCase]:
     return {name: _case(table, tables[BASE]) for name, table in tables.items()}
 
 
-def _case(table: dict[str, Scalar], base: dict[str, Scalar]) -> VariedCase:
+def _case(table: dict[str, Attribute], base: dict[str, Attribute]) -> VariedCase:
     keys = [key for key in table | base if key != "seed" and _value(table, key) != _value(base, key)]
     setting = keys[0] if len(keys) == 1 else SEVERAL if keys else NONE
     return VariedCase(setting, table.get(setting, NONE), int(table["particles"]))
 
 
-def _value(table: dict[str, Scalar], key: str) -> Scalar:
+def _value(table: dict[str, Attribute], key: str) -> Attribute:
     """Value of a setting; one that is not set counts as 0, as no viscosity is a viscosity of 0."""
     value = table.get(key, NONE)
     return 0.0 if value == NONE else value

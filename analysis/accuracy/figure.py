@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from analysis.accuracy.cases import SEVERAL
 from analysis.accuracy.measure import MEASURED
-from analysis.campaign import NONE
+from analysis.remnant.variables import OUTCOMES
 from analysis.report.figures.style import GREY, MARKERS, styled
-from analysis.results.variables import OUTCOMES
+from analysis.results.variables import NONE
 from engine.verification.accuracy.log_axes import label_decades
 from engine.verification.accuracy.pareto import pareto
 

@@ -5,8 +5,8 @@ import xarray as xr
 
 from analysis.accuracy.cases import BASE, RESOLUTION, VariedCase
 from analysis.accuracy.orders import orders
+from analysis.remnant.variables import DRIFTS, OUTCOMES
 from analysis.results.statistics import Difference, count, difference, interval, paired_difference, resolved
-from analysis.results.variables import DRIFTS, OUTCOMES
 from engine.job.directory import JobState
 
 MEASURED = ("mass_ratio", "b_over_a", "c_over_a", "bulk_density")

@@ -8,9 +8,9 @@ import xarray as xr
 from analysis.accuracy.cases import cases
 from analysis.accuracy.figure import error_against_cost
 from analysis.accuracy.measure import MEASURED, accuracy
+from analysis.remnant.variables import DRIFTS
 from analysis.report.figures.style import save
 from analysis.results.collect import collect
-from analysis.results.variables import DRIFTS
 from campaigns.campaign import KeptCampaign, read_campaign
 from engine.errors import SceneError
 from engine.job.directory import JobState

@@ -12,7 +12,7 @@ from analysis.remnant.hull import hull_of
 from analysis.remnant.particles import Integers, Particles, read_particles, snapshots
 from analysis.remnant.settling import is_settled, shape_change
 from analysis.remnant.spin import spin_period
-from analysis.results.variables import DAMAGED, DRIFTS, UndescribedError, described
+from analysis.remnant.variables import DAMAGED, DRIFTS, UndescribedError, described
 from engine.errors import JobError, RunFault, SceneError
 from engine.job.directory import JobDirectory, JobState
 from engine.scene.scene import scene_in
@@ -22,8 +22,11 @@ Numbers = dict[str, float]
 ANEW = "delete the directory of this job and run the study again to compute it anew"
 """What to do with a job whose files are damaged."""
 
-ELSEWHERE = "keep it: it may be sound, and the version that computed it, named in provenance.json, can measure it"
+FOREIGN = "keep it: it may be sound, and the version that computed it, named in provenance.json, can measure it"
 """What to do with a job whose scene or physics this version does not know."""
+
+UNREAD = "keep it, and look whether the disk and this program are well"
+"""What to do with a job that could not be measured for another reason."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,9 @@ class Outcome:
         job: its directory.
         state: how the job stands.
         reason: one line on why there are no numbers, empty otherwise.
-        numbers: the variables of `analysis.results.variables.OUTCOMES` of a job that is done, none of any other.
+        numbers: the variables of `analysis.remnant.variables.OUTCOMES` of a job that is done, none of any other.
         in_remnant: whether each particle at the end is in the largest remnant, shape [particle_count]; empty likewise.
+        foreign: whether another version of this project computed it, as far as one can tell.
     """
 
     job: JobDirectory
@@ -43,6 +47,7 @@ class Outcome:
     reason: str = ""
     numbers: Numbers = field(default_factory=dict)
     in_remnant: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    foreign: bool = False
 
     def read_remnant(self) -> Particles:
         """Read the particles of the largest remnant of a job that is done.
@@ -74,18 +79,24 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
         particles = read_particles(job.final)
         if particles.physics_version != physics_version:
             version = particles.physics_version
-            reason = f"computed with physics version {version}, not {physics_version}; {ELSEWHERE}"
-            return Outcome(job, JobState.CORRUPT, reason)
+            return _foreign(job, f"computed with physics version {version}, not {physics_version}")
         labels = clumps_of(particles)
         return Outcome(job, JobState.DONE, numbers=measure(job, particles, labels), in_remnant=labels == 0)
     except RunFault as fault:
         return Outcome(job, JobState.FAILED, _line(fault))
-    except UndescribedError:
-        raise
     except SceneError as error:
-        return Outcome(job, JobState.CORRUPT, f"{_line(error)}; {ELSEWHERE}")
-    except Exception as error:  # whatever is wrong with one job must not hide the others
+        return _foreign(job, _line(error))
+    except JobError as error:
         return Outcome(job, JobState.CORRUPT, f"{_line(error)}; {ANEW}")
+    except (UndescribedError, MemoryError):
+        raise
+    except Exception as error:  # whatever is wrong with one job must not hide the others
+        return Outcome(job, JobState.CORRUPT, f"{type(error).__name__}: {_line(error)}; {UNREAD}")
+
+
+def _foreign(job: JobDirectory, reason: str) -> Outcome:
+    """The outcome of a job that another version of this project may measure."""
+    return Outcome(job, JobState.CORRUPT, f"{reason}; {FOREIGN}", foreign=True)
 
 
 def latest(job: JobDirectory) -> Particles:
@@ -104,7 +115,7 @@ def latest(job: JobDirectory) -> Particles:
 
 
 def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Numbers:
-    """Measure every variable of `analysis.results.variables.OUTCOMES`.
+    """Measure every variable of `analysis.remnant.variables.OUTCOMES`.
 
     Args:
         job: the job directory, for its scene, history and snapshots.

@@ -10,9 +10,9 @@ from jinja2 import Environment, PackageLoader
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from analysis.remnant.outcome import Outcomes
+from analysis.remnant.variables import DRIFTS
 from analysis.results.collect import Collected
 from analysis.results.tables import as_shown, reasons, shape_table, unresolved
-from analysis.results.variables import DRIFTS
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_text
 

@@ -8,11 +8,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from analysis.campaign import NONE, Scalar, parameters, plain
 from analysis.remnant.outcome import Outcome, Outcomes, outcome
+from analysis.remnant.variables import OUTCOMES
 from analysis.results.error_bars import combine
-from analysis.results.variables import OUTCOMES, TEXTS, parameter
+from analysis.results.variables import NONE, TEXTS, Attribute, parameter, parameters, plain
 from campaigns.campaign import KeptCampaign, read_campaign
+from engine.errors import SceneError
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
 
@@ -51,17 +52,25 @@ def collect_with_outcomes(campaign_directory: Path) -> Collected:
     coordinates; those that all jobs share are attributes.
 
     Raises:
-        SceneError: there is no campaign.json, or it does not describe a campaign.
+        SceneError: there is no campaign.json, it does not describe a campaign, or another version computed its jobs.
     """
     campaign = read_campaign(campaign_directory, KeptCampaign)
     directories = {job.id: JobDirectory(campaign_directory / job.directory) for job in campaign.jobs}
     outcomes = {name: outcome(directory, campaign.physics_version) for name, directory in directories.items()}
+    _require_own_version(outcomes, campaign_directory)
     results = assemble(campaign, [outcomes[job.id] for job in campaign.jobs])
     if campaign.has_error_bars:
         write_dataset(campaign_directory / "members.nc", results)
         results = combine(results)
     write_dataset(campaign_directory / "results.nc", results)
     return Collected(campaign, outcomes, results)
+
+
+def _require_own_version(outcomes: Outcomes, directory: Path) -> None:
+    """Refuse a campaign of which this version can measure no job: earlier results are never replaced by nothing."""
+    foreign = [found for found in outcomes.values() if found.foreign]
+    if foreign and not any(found.state is JobState.DONE for found in outcomes.values()):
+        raise SceneError(f"{directory}: {foreign[0].reason}; nothing was written")
 
 
 def assemble(campaign: KeptCampaign, outcomes: list[Outcome]) -> xr.Dataset:
@@ -79,13 +88,21 @@ def assemble(campaign: KeptCampaign, outcomes: list[Outcome]) -> xr.Dataset:
     )
 
 
-def _parameters(campaign: KeptCampaign) -> tuple[dict[str, Scalar], list[str]]:
+def _parameters(campaign: KeptCampaign) -> tuple[dict[str, Attribute], list[str]]:
     """Parameters all jobs share, and the names of those that are coordinates beside the axes."""
     tables = [parameters(job) for job in campaign.jobs]
-    names = list(dict.fromkeys(name for table in tables for name in table))
-    shared = {name: tables[0][name] for name in names if len({table.get(name, NONE) for table in tables}) == 1}
-    differing = [name for name in names if name not in shared and any(t.get(name, NONE) != NONE for t in tables)]
+    names = dict.fromkeys(name for table in tables for name in table)
+    columns = {name: _values(tables, name) for name in names if not any(key.startswith(f"{name}.") for key in names)}
+    shared = {name: next(iter(values)) for name, values in columns.items() if len(values) == 1}
+    differing = [name for name in columns if name not in shared]
     return shared, [name for name in dict.fromkeys((*ALWAYS, *differing)) if name not in campaign.dims]
+
+
+def _values(tables: list[dict[str, Attribute]], name: str) -> set[Attribute]:
+    """Different values of a parameter; constants of a material count only where a job has that material."""
+    if name.startswith("materials."):
+        return {table[name] for table in tables if name in table}
+    return {table.get(name, NONE) for table in tables}
 
 
 def _axes(campaign: KeptCampaign) -> dict[str, xr.DataArray]:
@@ -129,7 +146,7 @@ def _grid(campaign: KeptCampaign, column: Column, empty: float | str, attributes
     return xr.DataArray(values, dims=campaign.dims, attrs=attributes)
 
 
-def _column(values: Sequence[Scalar]) -> Column:
+def _column(values: Sequence[Attribute]) -> Column:
     """Numbers as f64 with NaN for none; anything with other texts in it as texts."""
     if any(isinstance(value, str) and value != NONE for value in values):
         return np.array([str(value) for value in values], dtype=object)

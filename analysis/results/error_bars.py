@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
+from analysis.remnant.variables import COSTS, OUTCOMES, WITHOUT_ERROR
 from analysis.results.statistics import difference, resolved, standard_error
-from analysis.results.variables import COSTS, OUTCOMES, WITHOUT_ERROR
 from engine.job.directory import JobState
 
 MEMBERS = ("resolution", "seed")

@@ -14,7 +14,7 @@ from analysis.accuracy.cases import VariedCase, cases
 from analysis.accuracy.figure import error_against_cost, errors
 from analysis.accuracy.measure import accuracy
 from analysis.accuracy.report import markdown
-from analysis.results.variables import OUTCOMES
+from analysis.remnant.variables import OUTCOMES
 from campaigns.campaign import KeptCampaign, read_campaign
 from campaigns.expansion import expand
 from campaigns.study import find_study, read_study

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from analysis.remnant.variables import OUTCOMES, UndescribedError
 from analysis.results.collect import collect
-from analysis.results.variables import OUTCOMES, TEXTS, UndescribedError
+from analysis.results.variables import TEXTS
 from engine.errors import SceneError
 from engine.job.storage import read_dataset, write_json
 from engine.quantities import Quantity
@@ -123,7 +124,6 @@ FAULTS = {
         "corrupt",
         "final.nc",
     ),
-    "other physics": (lambda job: write_dataset(job / "final.nc", remnant(physics_version=7)), "corrupt", "version 7"),
     "status": (lambda job: (job / "status.json").write_text("{"), "corrupt", "status.json"),
     "status of a list": (lambda job: (job / "status.json").write_text("[]"), "corrupt", "status.json"),
     "status with a list": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": [1]}'), *TIME),
@@ -134,15 +134,7 @@ FAULTS = {
         "corrupt",
         "not of the scene",
     ),
-    "other physics may be sound": (
-        lambda job: write_dataset(job / "final.nc", remnant(physics_version=7)),
-        "corrupt",
-        "keep it: it may be sound",
-    ),
-    "scene of another version": (rename_a_key, "corrupt", "is now"),
-    "scene of another version may be sound": (rename_a_key, "corrupt", "keep it: it may be sound"),
     "advice": (truncate, "corrupt", "delete the directory of this job"),
-    "scene": (lambda job: (job / "scene.json").write_text("{}"), "corrupt", "scene.json"),
     "no history": (lambda job: (job / "history.nc").unlink(), "corrupt", "history.nc"),
     "short history": (
         lambda job: write_dataset(job / "history.nc", history(np.zeros(2)).drop_vars("mass")),
@@ -160,6 +152,68 @@ def test_a_damaged_job_gives_nan_and_its_reason(tmp_path: Path, fault: str) -> N
     assert cell["state"] == state
     assert reason in str(cell["reason"].item()) and "\n" not in str(cell["reason"].item())
     assert np.isnan([cell[name] for name in OUTCOMES]).all()
+
+
+OTHER_VERSIONS = {
+    "physics": (lambda job: write_dataset(job / "final.nc", remnant(physics_version=7)), "physics version 7, not 1"),
+    "a renamed key": (rename_a_key, "is now"),
+    "a scene without bodies": (lambda job: (job / "scene.json").write_text("{}"), "scene.json"),
+}
+
+
+@pytest.mark.parametrize("version", OTHER_VERSIONS)
+def test_a_job_of_another_version_is_to_be_kept(tmp_path: Path, version: str) -> None:
+    change, reason = OTHER_VERSIONS[version]
+    coords: dict[str, list[Any]] = {"angle": [5.0, 15.0]}
+    write_campaign(tmp_path, coords, [({"angle": angle}, collision(angle=angle)) for angle in coords["angle"]])
+    for number, angle in enumerate(coords["angle"]):
+        write_job(tmp_path / f"jobs/{number}", collision(angle=angle), remnant())
+    change(tmp_path / "jobs/0")
+    results = collect(tmp_path)
+    assert results["state"].values.tolist() == ["corrupt", "done"]
+    told = str(results["reason"].values[0])
+    assert reason in told and "keep it: it may be sound" in told and "delete" not in told
+
+
+@pytest.mark.parametrize("version", OTHER_VERSIONS)
+def test_results_of_a_campaign_of_another_version_are_not_replaced(tmp_path: Path, version: str) -> None:
+    job = one_job(tmp_path)
+    collect(tmp_path)
+    before = (tmp_path / "results.nc").read_bytes()
+    OTHER_VERSIONS[version][0](job)
+    with pytest.raises(SceneError, match=r"keep it: it may be sound.*nothing was written"):
+        collect(tmp_path)
+    assert (tmp_path / "results.nc").read_bytes() == before
+
+
+def test_a_fault_of_the_analysis_is_not_laid_on_the_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*arguments: object) -> None:
+        raise KeyError("x")
+
+    one_job(tmp_path)
+    monkeypatch.setattr("analysis.remnant.outcome.clumps_of", fail)
+    told = str(collect(tmp_path)["reason"].item())
+    assert "KeyError: 'x'" in told and "keep it" in told and "delete" not in told
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_part_that_some_jobs_leave_out_is_a_parameter(tmp_path: Path, order: int) -> None:
+    settings: list[dict[str, Any]] = [{}, {"fracture": False}][::order]
+    jobs = [({"case": f"case {number}"}, collision(**given)) for number, given in enumerate(settings)]
+    write_campaign(tmp_path, {"case": ["case 0", "case 1"]}, jobs)
+    rules = collect(tmp_path)["fracture.flaws"].values.tolist()
+    assert rules == ["covered", "none"][::order]
+
+
+def test_constants_of_a_material_that_some_jobs_have_are_attributes(tmp_path: Path) -> None:
+    ice = {"ice": {"cohesion": 1e6, "intact_friction": 1.0, "melt_energy": 7e5, "friction": 0.6}}
+    settings: list[dict[str, Any]] = [{}, {"projectile": {"material": "ice"}, "materials": ice}]
+    jobs = [({"case": f"case {number}"}, collision(**given)) for number, given in enumerate(settings)]
+    write_campaign(tmp_path, {"case": ["case 0", "case 1"]}, jobs)
+    results = collect(tmp_path)
+    assert not [name for name in results.coords if str(name).startswith("materials.")]
+    assert results.attrs["materials.ice.cohesion"] == 1e6
+    assert results["projectile.material"].values.tolist() == ["none", "ice"]
 
 
 @pytest.fixture

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from analysis.remnant.variables import OUTCOMES
 from analysis.report.figures import angle as shape_versus_angle
 from analysis.report.products import plots
 from analysis.results.collect import collect
 from analysis.results.error_bars import combine
 from analysis.results.tables import printed, shape_table, unresolved
-from analysis.results.variables import OUTCOMES
 from engine.job.storage import read_dataset
 from engine.scene.collision import Collision
 from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job

@@ -1,0 +1,113 @@
+"""The outcomes of a job: names, units and meanings (CF attributes)."""
+
+from analysis.remnant.ellipsoid import THIN
+from analysis.remnant.fragments import LINKING_LENGTH
+from analysis.remnant.settling import TOLERANCE, WINDOW
+from engine.quantities import CONSERVED, Quantity
+
+DAMAGED = 0.5
+"""A particle with more damage than this counts as damaged."""
+
+
+_FLAG = "1 yes, 0 no, NaN unknown"
+_SCALES = {
+    "mass": "the mass at the start",
+    "momentum": "sum m |v| at the start",
+    "angular_momentum": "its magnitude at the start; NaN without any",
+    "total_energy": "the kinetic energy at the start",
+}
+"""What the change of each conserved quantity is divided by."""
+
+DRIFTS = {f"drift_{name.removeprefix('total_')}": name for name in CONSERVED}
+"""Outcomes that would be 0 without error, and the conserved quantity that changed."""
+
+
+def _drift_of(name: str) -> Quantity:
+    total = f"total {name.removeprefix('total_').replace('_', ' ')}"
+    return Quantity(f"change of the {total}", "1", f"at the end of the run, relative to {_SCALES[name]}")
+
+
+OUTCOMES = {
+    "mass_ratio": Quantity(
+        "mass of the largest remnant over the mass of the target",
+        "1",
+        f"largest friends-of-friends clump, linking length {LINKING_LENGTH} particle spacings, no velocity condition; "
+        "target mass 4/3 pi rho0 R^3, so that a perfect merger of equals is 2",
+    ),
+    "second_mass_ratio": Quantity("mass of the second largest clump over the mass of the target", "1"),
+    "bound_mass_ratio": Quantity(
+        "mass bound to the largest remnant, itself included, over the mass of the target",
+        "1",
+        "clumps of negative two-body energy join until none is left",
+    ),
+    "clumps": Quantity("number of clumps, single particles included", "1"),
+    "b_over_a": Quantity(
+        "intermediate over longest axis of the largest remnant",
+        "1",
+        "uniform ellipsoid with the inertia tensor of the particles taken as points",
+    ),
+    "c_over_a": Quantity("shortest over longest axis of the largest remnant", "1", "as b_over_a"),
+    "c_over_a_extended": Quantity(
+        "shortest over longest axis of the largest remnant, particles of finite size",
+        "1",
+        "as c_over_a with m h^2/12 added per particle and axis; points understate a thin axis",
+    ),
+    "axis_a": Quantity("longest full axis of the largest remnant", "m", "as b_over_a"),
+    "axis_b": Quantity("intermediate full axis of the largest remnant", "m", "as b_over_a"),
+    "axis_c": Quantity("shortest full axis of the largest remnant", "m", "as b_over_a"),
+    "largest_thin": Quantity("largest remnant is thin", "1", f"axis_c below {THIN:g} particle spacings; {_FLAG}"),
+    "hull_b_over_a": Quantity(
+        "intermediate over longest axis of the largest remnant's convex hull", "1", "inertia tensor of the solid hull"
+    ),
+    "hull_c_over_a": Quantity(
+        "shortest over longest axis of the largest remnant's convex hull", "1", "inertia tensor of the solid hull"
+    ),
+    "hull_volume": Quantity("volume of the largest remnant's convex hull", "m3"),
+    "extent_a": Quantity("size of the largest remnant along the longest axis of its hull", "m", "particles as points"),
+    "extent_b": Quantity("size of the largest remnant along the intermediate axis of its hull", "m", "as extent_a"),
+    "extent_c": Quantity("size of the largest remnant along the shortest axis of its hull", "m", "as extent_a"),
+    "bulk_density": Quantity(
+        "bulk density of the largest remnant", "kg m-3", "mass over pi/6 axis_a axis_b axis_c: too high when thin"
+    ),
+    "spin_period": Quantity(
+        "rotation period of the largest remnant", "s", "inverse inertia tensor times angular momentum; NaN if undefined"
+    ),
+    "J_p05": Quantity("5th percentile of rho0/rho over the particles of the largest remnant", "1"),
+    "J_p50": Quantity("median of rho0/rho over the particles of the largest remnant", "1"),
+    "J_p95": Quantity("95th percentile of rho0/rho over the particles of the largest remnant", "1"),
+    "damaged_fraction": Quantity(f"mass fraction of the largest remnant with damage above {DAMAGED:g}", "1"),
+    "time_after_contact": Quantity("time of the outcome after point-mass contact", "s"),
+    "shape_change": Quantity(
+        "largest relative change of b_over_a and c_over_a lately",
+        "1",
+        f"against the snapshots of the last {WINDOW:.0%} of the time after contact, or more when they are sparse",
+    ),
+    "settled": Quantity("shape of the largest remnant is settled", "1", f"shape_change below {TOLERANCE:g}; {_FLAG}"),
+    **{drift: _drift_of(name) for drift, name in DRIFTS.items()},
+    "steps": Quantity("time steps", "1"),
+    "wall_time": Quantity("computing time", "s"),
+    "cpu_time": Quantity("processor time of all threads", "s"),
+}
+"""Numbers of one job, in the order of results.nc."""
+
+
+class UndescribedError(LookupError):
+    """What is measured and what `OUTCOMES` describes differ: an error of this program, not of a job."""
+
+
+def described(numbers: dict[str, float]) -> dict[str, float]:
+    """Return the numbers of one job in the order of `OUTCOMES`.
+
+    Raises:
+        UndescribedError: a number is not described, or one that is described was not measured.
+    """
+    if odd := sorted(numbers.keys() ^ OUTCOMES.keys()):
+        raise UndescribedError(f"measured or described in OUTCOMES, not both: {', '.join(odd)}")
+    return {name: numbers[name] for name in OUTCOMES}
+
+
+WITHOUT_ERROR = ("largest_thin", "settled", "time_after_contact")
+"""Outcomes that are flags or given, not measured: they have no error."""
+
+COSTS = ("steps", "wall_time", "cpu_time")
+"""Outcomes that add up over the members of a point."""
