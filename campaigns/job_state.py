@@ -79,7 +79,7 @@ def decide(status: Status, retry_failed: bool) -> Decision:
         retry_failed: run failed jobs once more.
     """
     note = f" ({status.reason})" if status.reason else ""
-    match JobState(status.state):
+    match status.state:
         case JobState.PENDING:
             return Decision(True, f"not started yet{note}")
         case JobState.INTERRUPTED:

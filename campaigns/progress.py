@@ -102,7 +102,7 @@ def table(jobs: Sequence[TrackedJob]) -> Table:
 
 def _screen(jobs: Sequence[TrackedJob], room: int) -> Group:
     """As many jobs as there is room for, running ones first, and the total."""
-    chosen = sorted(jobs, key=lambda job: _SHOWN_FIRST.index(JobState(job.status.state)))[: max(1, room)]
+    chosen = sorted(jobs, key=lambda job: _SHOWN_FIRST.index(job.status.state))[: max(1, room)]
     hidden = len(jobs) - len(chosen)
     return Group(table(chosen), *([f"{hidden} more jobs not shown"] if hidden else []), total(jobs))
 
@@ -112,7 +112,7 @@ def _cells(job: TrackedJob) -> tuple[Text | ProgressBar, ...]:
     running = status.state == JobState.RUNNING
     return (
         Text(job.id),
-        Text(status.state, style=_COLOURS.get(JobState(status.state), "dim")),
+        Text(status.state, style=_COLOURS.get(status.state, "dim")),
         ProgressBar(completed=percent(status), width=20),
         Text(f"{status.time:.0f} s" if status.step else "", justify="right"),
         Text(f"{status.steps_per_second:.1f}" if running else "", justify="right"),

@@ -75,7 +75,7 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
     try:
         status = job.status()
         if status.state != JobState.DONE:
-            return Outcome(job, JobState(status.state), _line(status.reason))
+            return Outcome(job, status.state, _line(status.reason))
         particles = read_particles(job.final)
         if particles.physics_version != physics_version:
             version = particles.physics_version
@@ -162,7 +162,7 @@ def _ellipsoid(remnant: Particles) -> Numbers:
         "c_over_a": shape.c_over_a,
         "c_over_a_extended": extended.c_over_a,
         **{f"axis_{name}": float(axis) for name, axis in zip("abc", shape.axes, strict=True)},
-        "largest_thin": float(shape.axes[2] < THIN * remnant.spacing),
+        "c_unresolved": float(shape.axes[2] < THIN * remnant.spacing),
         "bulk_density": bulk_density(float(remnant.mass.sum()), shape.volume),
         "spin_period": spin_period(remnant.position, remnant.velocity, remnant.mass),
     }

@@ -55,7 +55,9 @@ OUTCOMES = {
     "axis_a": Quantity("longest full axis of the largest remnant", "m", "as b_over_a"),
     "axis_b": Quantity("intermediate full axis of the largest remnant", "m", "as b_over_a"),
     "axis_c": Quantity("shortest full axis of the largest remnant", "m", "as b_over_a"),
-    "largest_thin": Quantity("largest remnant is thin", "1", f"axis_c below {THIN:g} particle spacings; {_FLAG}"),
+    "c_unresolved": Quantity(
+        "shortest axis of the largest remnant is not resolved", "1", f"axis_c below {THIN:g} particle spacings; {_FLAG}"
+    ),
     "hull_b_over_a": Quantity(
         "intermediate over longest axis of the largest remnant's convex hull", "1", "inertia tensor of the solid hull"
     ),
@@ -106,7 +108,7 @@ def described(numbers: dict[str, float]) -> dict[str, float]:
     return {name: numbers[name] for name in OUTCOMES}
 
 
-WITHOUT_ERROR = ("largest_thin", "settled", "time_after_contact")
+WITHOUT_ERROR = ("c_unresolved", "settled", "time_after_contact")
 """Outcomes that are flags or given, not measured: they have no error."""
 
 COSTS = ("steps", "wall_time", "cpu_time")

@@ -20,7 +20,7 @@ HEADINGS = {
     "bulk_density": "density [kg/m3]",
     "spin_period": "period [h]",
     "clumps": "clumps",
-    "largest_thin": "thin",
+    "c_unresolved": "thin",
     "settled": "settled",
     "time_after_contact": "t [s]",
     "members": "members",

@@ -57,7 +57,7 @@ class Status:
         host, pid, process_start: the process that wrote it.
     """
 
-    state: str
+    state: JobState
     reason: str = ""
     fault: Fault | None = None
     time: float = 0.0
@@ -146,7 +146,7 @@ class JobDirectory:
         try:
             status = _STATUS.validate_json(self.status_file.read_bytes())
         except FileNotFoundError:
-            return Status(state="pending")
+            return Status(state=JobState.PENDING)
         except ValidationError as error:
             issue = error.errors(include_url=False)[0]
             key = "".join(f"'{part}': " for part in issue["loc"])
@@ -155,8 +155,8 @@ class JobDirectory:
             raise JobError(f"{self.status_file}: damaged: {error}") from error
         if status.state not in WRITTEN:
             raise JobError(f"{self.status_file}: damaged: unknown state '{status.state}'")
-        if status.state == "running" and not _is_alive(status):
-            return replace(status, state="interrupted")
+        if status.state == JobState.RUNNING and not _is_alive(status):
+            return replace(status, state=JobState.INTERRUPTED)
         return status
 
     def write_status(self, status: Status) -> None:
@@ -187,7 +187,7 @@ class JobDirectory:
             except OSError as error:
                 raise self._busy(self.status()) from error
             status = self.status()
-            if status.state == "running" and status.pid != os.getpid():
+            if status.state == JobState.RUNNING and status.pid != os.getpid():
                 raise self._busy(status)
             remove_partial_files(self.path)
             yield

@@ -17,7 +17,7 @@ from engine import PHYSICS_VERSION
 from engine.device import backend
 from engine.errors import Fault, GuardFault, JobError, SceneError
 from engine.job.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
-from engine.job.directory import HEARTBEAT_PERIOD, JobDirectory, Status
+from engine.job.directory import HEARTBEAT_PERIOD, JobDirectory, JobState, Status
 from engine.job.history import History
 from engine.job.provenance import record_session
 from engine.job.snapshot import FIELDS, snapshot
@@ -65,7 +65,7 @@ def run_job(directory: Path, options: Options) -> Status:
     scene, job = scene_in(directory), JobDirectory(directory)
     with job.claim():
         status = job.status()
-        if status.state == "done" and job.final.exists():
+        if status.state == JobState.DONE and job.final.exists():
             refuse_foreign(read_dataset(job.final), scene, job.final)
             return status
         backend.start(options.arch, options.threads)
@@ -83,7 +83,7 @@ def _leave_word(job: JobDirectory, error: Exception) -> None:
     log.exception("ended by an error")
     reason = " ".join(f"{type(error).__name__}: {error}".split())
     with suppress(OSError):
-        job.write_status(replace(job.status(), state="interrupted", reason=reason))
+        job.write_status(replace(job.status(), state=JobState.INTERRUPTED, reason=reason))
 
 
 class Session:
@@ -146,7 +146,7 @@ class Session:
         self.guard = Guard(self.scene, first, self.simulation.first_dt)
         record_session(self.job, self.scene, self.options.arch, self.options.threads)
         self._write_outputs()
-        self._report("running")
+        self._report(JobState.RUNNING)
 
     def _written_history(self) -> Dataset | None:
         """History that an earlier session wrote, always before its checkpoint; `None` if it cannot be read."""
@@ -173,7 +173,7 @@ class Session:
             if now - self.reported >= HEARTBEAT_PERIOD:
                 self.rate = (self.simulation.step - steps) / (now - since)
                 steps, since = self.simulation.step, now
-                self._report("running")
+                self._report(JobState.RUNNING)
 
     def _advance(self) -> None:
         simulation = self.simulation
@@ -254,7 +254,7 @@ class Session:
     def _cpu_time(self) -> float:
         return self.cpu_before + time.process_time() - self.cpu_begun
 
-    def _report(self, state: str, reason: str = "", fault: Fault | None = None) -> Status:
+    def _report(self, state: JobState, reason: str = "", fault: Fault | None = None) -> Status:
         simulation, scene = self.simulation, self.scene
         left = (scene.end_time - simulation.time) / max(float(simulation.clock.dt[None]), 1e-300)
         status = Status(
@@ -268,7 +268,7 @@ class Session:
             wall_time=self._wall_time(),
             cpu_time=self._cpu_time(),
             steps_per_second=self.rate,
-            time_left=left / self.rate if self.rate > 0.0 and state == "running" else 0.0,
+            time_left=left / self.rate if self.rate > 0.0 and state == JobState.RUNNING else 0.0,
         )
         self.job.write_status(status)
         self.options.report(status)
@@ -280,16 +280,16 @@ class Session:
         self._write_history()
         write_dataset(self.job.final, self._snapshot(state, np.float64))
         log.info("done: %d steps in %.1f s", self.simulation.step, self._wall_time())
-        return self._report("done")
+        return self._report(JobState.DONE)
 
     def _interrupt(self) -> Status:
         self._save()
         log.info("interrupted at t = %.6g s; run again to resume", self.simulation.time)
-        return self._report("interrupted", "stopped by a signal; run again to resume")
+        return self._report(JobState.INTERRUPTED, "stopped by a signal; run again to resume")
 
     def _fail(self, fault: Fault) -> Status:
         """Report the fault that stopped the run; the last checkpoint stays as it is."""
         if self.history.rows:
             self._write_history()
         log.error("failed: %s", fault)
-        return self._report("failed", str(fault), fault)
+        return self._report(JobState.FAILED, str(fault), fault)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from analysis.__main__ import app
+from analysis.cli import app
 from engine.scene.collision import Collision
 from tests.helpers.fake_jobs import write_campaign, write_job
 

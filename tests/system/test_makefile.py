@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.main import get_command
 
-import analysis.__main__
+import analysis.cli
 import campaigns.cli
 import engine.cli
 
@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 NAMED = sorted(set(re.findall(r"(?:^    |`)make ([a-z-]+)", (ROOT / "README.md").read_text(), re.MULTILINE)))
 """Targets that the README tells its reader to make."""
 
-APPLICATIONS = {"analysis": analysis.__main__.app, "campaigns": campaigns.cli.app, "engine": engine.cli.application}
+APPLICATIONS = {"analysis": analysis.cli.app, "campaigns": campaigns.cli.app, "engine": engine.cli.application}
 
 
 def make(*arguments: str) -> str:

@@ -17,7 +17,10 @@ FLOORS = (
     ("engine.simulation",),
     ("engine.job",),
     ("engine.profile", "engine.verification", "campaigns"),
-    ("analysis", "engine.front"),
+    ("analysis.remnant", "engine.front"),
+    ("analysis.results",),
+    ("analysis.report", "analysis.accuracy"),
+    ("analysis",),
 )
 """Rooms from the ground up; a room imports those below it, and those of its own floor as long as no circle closes."""
 

@@ -74,7 +74,7 @@ def _lines(results: xr.Dataset) -> Iterator[tuple[str, tuple[Look, pd.DataFrame]
 
 def _line(axes: Axes, rows: pd.DataFrame, name: str, look: Look) -> None:
     spread = (f"{name}_error", "mean") if f"{name}_error" in rows else (name, "std")
-    found = rows.groupby("angle").agg(mean=(name, "mean"), spread=spread, thin=("largest_thin", "max"))
+    found = rows.groupby("angle").agg(mean=(name, "mean"), spread=spread, thin=("c_unresolved", "max"))
     bars = found["spread"].fillna(0.0)
     axes.errorbar(found.index, found["mean"], bars, capsize=2.5, elinewidth=0.9, markeredgewidth=1.2, **look)
     thin = found[found["thin"] > 0.0]

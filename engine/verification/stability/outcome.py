@@ -8,7 +8,7 @@ import numpy as np
 from engine.device import backend
 from engine.errors import GuardFault
 from engine.job.checkpoint import load_checkpoint, save_checkpoint
-from engine.job.directory import JobDirectory, Status
+from engine.job.directory import JobDirectory, JobState, Status
 from engine.job.session import Options, Session
 from engine.simulation.conservation import as_row
 from engine.simulation.guard import require_finite
@@ -92,7 +92,7 @@ def _save_start(case: ExtremeCase, run: Session) -> None:
 
 
 def _verdict(run: Session, status: Status, extremes: Measures) -> tuple[str, str]:
-    if status.state == "done":
+    if status.state == JobState.DONE:
         broken = extremes.broken()
         return (FAILED, f"{broken}, and no guard noticed") if broken else (STABLE, "")
     if status.fault and _checkpoint_is_good(run):

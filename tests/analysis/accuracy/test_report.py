@@ -9,11 +9,11 @@ import xarray as xr
 from matplotlib.colors import same_color
 from typer.testing import CliRunner
 
-from analysis.__main__ import app
 from analysis.accuracy.cases import VariedCase, cases
 from analysis.accuracy.figure import error_against_cost, errors
 from analysis.accuracy.measure import accuracy
 from analysis.accuracy.report import markdown
+from analysis.cli import app
 from analysis.remnant.variables import OUTCOMES
 from campaigns.campaign import KeptCampaign, read_campaign
 from campaigns.expansion import expand

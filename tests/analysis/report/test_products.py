@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-from analysis.__main__ import app, main
+from analysis.cli import app, main
 from analysis.remnant.fragments import friends_of_friends
 from analysis.report.products import plots
 from analysis.results.collect import collect

@@ -64,14 +64,14 @@ def test_a_done_job_is_measured(tmp_path: Path) -> None:
     assert cell["clumps"] == 2.0 and cell["damaged_fraction"] == 1.0 and cell["J_p50"] == 1.0
     assert cell["steps"] == 100.0 and cell["wall_time"] == 12.5 and cell["cpu_time"] == 20.5
     assert cell["time_after_contact"] == 900.0
-    assert cell["largest_thin"] == 0.0 and np.isnan(cell["settled"])
+    assert cell["c_unresolved"] == 0.0 and np.isnan(cell["settled"])
 
 
 def test_a_thin_remnant_is_flagged(tmp_path: Path) -> None:
     points, spacing = lattice_ellipsoid((3e5, 2e5, 3e4), 400)
     one_job(tmp_path, final=particles(points, spacing, time=900.0))
     cell = collect(tmp_path).isel(velocity=0, angle=0)
-    assert cell["largest_thin"] == 1.0
+    assert cell["c_unresolved"] == 1.0
     assert cell["c_over_a_extended"] > cell["c_over_a"]
 
 
@@ -128,7 +128,7 @@ FAULTS = {
     "status of a list": (lambda job: (job / "status.json").write_text("[]"), "corrupt", "status.json"),
     "status with a list": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": [1]}'), *TIME),
     "status with a text": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": "x"}'), *TIME),
-    "state": (lambda job: (job / "status.json").write_text('{"state": "well"}'), "corrupt", "unknown state 'well'"),
+    "state": (lambda job: (job / "status.json").write_text('{"state": "well"}'), "corrupt", "state"),
     "other scene": (
         lambda job: write_dataset(job / "final.nc", remnant().assign_attrs(scene_hash="other")),
         "corrupt",

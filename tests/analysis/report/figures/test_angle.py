@@ -58,7 +58,7 @@ def test_only_thin_remnants_are_hollow(tmp_path: Path) -> None:
         points, spacing = lattice_ellipsoid((2e5, 1e5, c), 150)
         write_job(tmp_path / f"jobs/{number}", jobs[number][1], particles(points, spacing, time=900.0))
     results = collect(tmp_path)
-    assert results["largest_thin"].values.tolist() == [[0.0, 1.0]]
+    assert results["c_unresolved"].values.tolist() == [[0.0, 1.0]]
     for axes in angle.draw(results, {}).axes:
         hollow = [line for line in axes.lines if same_color(line.get_markerfacecolor(), "white")]
         assert [line.get_xdata().tolist() for line in hollow] == [[15.0]]
