@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
+from analysis.results.variables import NONE
 from engine.job.storage import write_atomically
 
 HEADINGS = {
@@ -48,8 +49,14 @@ def series(results: xr.Dataset) -> Iterator[tuple[str, pd.DataFrame]]:
         yield "", table
         return
     for values, rows in table.groupby(names, sort=False, dropna=False):
-        pairs = zip(names, values, strict=True)
-        yield ", ".join(f"{name} {_text(value)}" for name, value in pairs), rows
+        pairs = zip(_labels(names), values, strict=True)
+        yield ", ".join(f"{label} {NONE if value != value else _text(value)}" for label, value in pairs), rows
+
+
+def _labels(names: list[str]) -> list[str]:
+    """Short names of parameters: constants of a material by their last part, where that tells them apart."""
+    last = [name.rpartition(".")[2] if name.startswith("materials.") else name for name in names]
+    return [short if last.count(short) == 1 else name for name, short in zip(names, last, strict=True)]
 
 
 def shape_table(results: xr.Dataset) -> pd.DataFrame:

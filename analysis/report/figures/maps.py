@@ -1,5 +1,7 @@
 """Outcomes over velocity and angle as heat maps."""
 
+from textwrap import fill
+
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -25,6 +27,10 @@ PANELS = {
 """Title and upper end of the colour scale of each map."""
 
 
+LETTERS = 28
+"""Letters of a row's label in a line."""
+
+
 @styled
 def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
     """M_lr/M_target, b/a and c/a, one row of maps per series; means over seeds, missing points with their state."""
@@ -36,7 +42,7 @@ def draw(results: xr.Dataset, outcomes: Outcomes) -> Figure:
     for row, (title, table) in zip(panels, groups, strict=True):
         for axes, (name, (_, highest)) in zip(row, PANELS.items(), strict=True):
             _map(axes, table, name, highest)
-        row[0].set_ylabel(f"{title}\nvelocity at contact [m/s]".strip())
+        row[0].set_ylabel(f"{fill(title, LETTERS)}\nvelocity at contact [m/s]".strip())
     for top, bottom, (label, _) in zip(panels[0], panels[-1], PANELS.values(), strict=True):
         top.set_title(label)
         bottom.set_xlabel("impact angle [deg]")
