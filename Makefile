@@ -23,7 +23,7 @@ THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; 
 help: ## explain all targets
 	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
 	@echo
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 	@echo
 	@echo '  STUDY    a shipped study ($(basename $(notdir $(wildcard campaigns/studies/*.toml)))) or a path to a study file'
 	@echo '  RUNS     directory that holds the results of all studies'

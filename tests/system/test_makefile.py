@@ -47,6 +47,12 @@ def test_a_target_of_the_readme_is_explained_and_runs_commands_that_exist(target
             assert find_spec(module)
 
 
+def test_every_target_is_explained(explained) -> None:
+    targets = re.findall(r"^([a-z-]+):.* ## ", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    (phony,) = re.findall(r"^\.PHONY: (.+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    assert sorted(phony.split()) == sorted(targets) == sorted(explained)
+
+
 def test_help_names_the_shipped_studies() -> None:
     for study in (ROOT / "campaigns" / "studies").glob("*.toml"):
         assert study.stem in make("--silent", "help")
