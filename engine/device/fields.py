@@ -44,12 +44,12 @@ def overwrite(field: ti.Field, values: NDArray[np.generic]) -> None:
 
 
 def per_body(**columns: Sequence[float]) -> StructField:
-    """Return a field of structs of constants, one entry per body.
+    """Return a field of structs of constants, one entry per body, with room for more as in every other field.
 
     Args:
         columns: values of each member of the struct, one per body.
     """
-    table = ti.types.struct(**dict.fromkeys(columns, Real)).field(shape=len(next(iter(columns.values()))))
+    table = ti.types.struct(**dict.fromkeys(columns, Real)).field(shape=capacity(len(next(iter(columns.values())))))
     for name, values in columns.items():
         for body, value in enumerate(values):
             getattr(table, name)[body] = value

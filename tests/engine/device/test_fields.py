@@ -26,7 +26,7 @@ def test_fewer_values_leave_nothing_of_those_before():
 
 def test_constants_are_stored_by_body_and_name():
     table = per_body(density=[1.0, 2.0, 3.0], modulus=[10.0, 20.0, 30.0])
-    assert table.shape == (3,)
+    assert table.shape == (capacity(3),)
     for body in range(3):
         assert (table[body].density, table[body].modulus) == (body + 1.0, 10.0 * (body + 1.0))
     assert table.density.dtype == Real

@@ -45,7 +45,7 @@ def test_memory_counts_entries_and_components() -> None:
         4 * 12: ti.field(ti.i32, (3, 4)),
         8 * 6 * 7: vec6.field(shape=7),
         8 * 9: mat3.field(shape=()),
-        8 * 2 * 3: per_body(density=np.ones(3), modulus=np.ones(3)),
+        8 * 2 * 1024: per_body(density=np.ones(3), modulus=np.ones(3)),
     }
     assert [allocated_bytes(field) for field in fields.values()] == list(fields)
 
