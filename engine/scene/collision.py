@@ -143,8 +143,8 @@ class Collision(Frozen):
         forms = [self.materials[name].eos.form for name in (first, second)]
         if forms[0] != forms[1]:
             raise SceneError(
-                f"'target.material' {first} and 'projectile.material' {second} must have equations of state of one form "
-                f"('materials.{first}.eos.form' is {forms[0]}, 'materials.{second}.eos.form' is {forms[1]})"
+                f"'target.material' {first} and 'projectile.material' {second} must have equations of state of one "
+                f"form ('materials.{first}.eos.form' is {forms[0]}, 'materials.{second}.eos.form' is {forms[1]})"
             )
 
     def _complete(self, name: str) -> Material:
@@ -194,8 +194,8 @@ def _require_slow_spin(name: str, period: float | None, radius: float, material:
     least = 2.0 * np.pi * radius / (3600.0 * material.longitudinal_speed)
     if period is not None and period < least:
         raise SceneError(
-            f"'{name}.spin_period' {period} h moves the surface faster than the {material.longitudinal_speed:.0f} m/s of "
-            f"longitudinal waves: give at least {1.001 * least:.4g} h"
+            f"'{name}.spin_period' {period} h moves the surface faster than longitudinal waves, "
+            f"{material.longitudinal_speed:.0f} m/s: give at least {1.001 * least:.4g} h"
         )
 
 
