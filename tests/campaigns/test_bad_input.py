@@ -229,6 +229,38 @@ def test_other_settings(command, write_study, runs, tree):
     assert tree(runs) == before
 
 
+def test_a_campaign_of_another_version_is_kept_and_told_about_in_few_lines(command, write_study, runs, tree):
+    command("run", write_study(angle="[5, 15]"))
+    file = runs / "small" / "campaign.json"
+    content = json.loads(file.read_text())
+    for job in content["jobs"]:
+        job["collision"] |= {"friction": 0.5, "radius": 5e4, "projectile_radius": None, "material": {"rho0": 2700.0}}
+    file.write_text(json.dumps(content))
+    before = tree(runs)
+    for verb in ("run", "plan", "status", "resume"):
+        result = command(verb, write_study())
+        assert result.code == 2
+        assert "'jobs.0.collision.friction' is now" in result.err and "jobs.1" not in result.err
+        assert "keep it" in result.err and "RUNS=DIR" in result.err and "delete" not in result.err
+        assert "and 13 more like these" in result.err and len(result.err.splitlines()) == 5
+    assert tree(runs) == before
+
+
+@pytest.mark.parametrize("content", ["[]", '{"jobs": ' + "[" * 30 + "]" * 30 + "}"])
+def test_json_that_is_no_campaign_is_kept(content, command, write_study, runs):
+    command("run", write_study())
+    (runs / "small" / "campaign.json").write_text(content)
+    result = command("run", write_study())
+    assert result.code == 2 and "keep it" in result.err and "delete" not in result.err
+
+
+def test_many_other_settings_are_told_in_short(command, write_study):
+    command("run", write_study())
+    result = command("run", write_study(collision="parameter_set = 'talk'"))
+    assert result.code == 2
+    assert "fracture.flaws covered there and 2NlnN in the study" in result.err and ", and 2 more)" in result.err
+
+
 def test_same_settings_in_other_words(command, write_study):
     command("run", write_study())
     assert command("plan", write_study(collision="target.radius = 50_000\nseed = 1")).code == 0
