@@ -104,8 +104,8 @@ def test_a_new_spin_keeps_finished_jobs(command, write_study, runs):
     assert len(list(runs.glob("small/jobs/*"))) == 8
 
 
-def test_cases_beside_the_finished_jobs_of_a_grid_keep_them(command, write_study, runs):
-    command("run", write_study())
+def test_a_setting_that_becomes_one_of_several_cases_keeps_finished_jobs(command, write_study, runs):
+    command("run", write_study(collision="target.spin_period = 8"))
     cases = "[5]\n[[cases]]\nname = 'still'\n[[cases]]\nname = 'turning'\ntarget.spin_period = 8"
     assert command("run", write_study(angle=cases)).code == 0
     assert starts(runs, "v0100_a05") == ["from step 0"]
