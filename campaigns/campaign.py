@@ -114,7 +114,7 @@ def read_campaign(directory: Path, kind: type[Kept]) -> Kept:
     path = directory / FILE
     if not path.is_file():
         raise SceneError(
-            f"{directory}: holds no {FILE}; name the directory of a campaign, or start one with: "
+            f"{directory}: contains no {FILE}; name the directory of a campaign, or start one with: "
             "make campaign STUDY=..."
         )
     return validate(kind, read_table(path), str(path))

@@ -30,7 +30,7 @@ app = typer.Typer(
 )
 
 StudyName = Annotated[str, typer.Argument(metavar="STUDY", help="A shipped study or a path to a study file.")]
-Runs = Annotated[Path, typer.Option(help="Directory that holds the results of all studies.")]
+Runs = Annotated[Path, typer.Option(help="Directory of the results of all studies.")]
 Workers = Annotated[int | None, typer.Option(min=1, help="Jobs at the same time [default: cores / threads per job].")]
 Threads = Annotated[
     int | None, typer.Option(min=1, help="CPU threads of one job [default: 1, more if jobs are fewer than cores].")
@@ -105,7 +105,7 @@ def status(study: StudyName, runs: Runs = DEFAULT_RUNS) -> None:
 
 @app.command()
 def where(study: StudyName, runs: Runs = DEFAULT_RUNS) -> None:
-    """Print the directory that holds the results of a study."""
+    """Print the directory of the results of a study."""
     print(_directory(study, runs).path)
 
 

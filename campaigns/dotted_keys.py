@@ -53,7 +53,7 @@ def _inside(node: Any, part: str) -> Any:
 
 
 def scalar_keys(model: type[BaseModel], prefix: str = "") -> Iterator[str]:
-    """List the dotted keys of all single values of an input model, for every kind of table that a key may hold.
+    """List the dotted keys of all single values of an input model, for every kind of table that a key may contain.
 
     `NAME` stands for the names that a study gives: `materials.NAME.rho0`.
     """
@@ -62,6 +62,19 @@ def scalar_keys(model: type[BaseModel], prefix: str = "") -> Iterator[str]:
         inner = f"{prefix}{name}.{ANY_NAME}." if has_names(field) else f"{prefix}{name}."
         below = [key for table in tables for key in scalar_keys(table, inner)]
         yield from dict.fromkeys(below) if tables else [prefix + name]
+
+
+def with_names_of(key: str, known: str) -> str:
+    """Return a known key with the name that a given one has in place of `NAME`.
+
+    Args:
+        key: as given, `materials.ice.eos`.
+        known: as from `scalar_keys`, `materials.NAME.eos.A`.
+    """
+    given, parts = key.split("."), known.split(".")
+    at = parts.index(ANY_NAME) if ANY_NAME in parts else len(parts)
+    has_name = given[:at] == parts[:at] and len(given) > at + 1
+    return ".".join([*parts[:at], given[at], *parts[at + 1 :]] if has_name else parts)
 
 
 def rest_of(key: str, known: str) -> str | None:

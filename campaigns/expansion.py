@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from campaigns.campaign import Campaign, Job
-from campaigns.dotted_keys import flatten, ordered, rest_of, scalar_keys, value_at
+from campaigns.dotted_keys import flatten, ordered, rest_of, scalar_keys, value_at, with_names_of
 from campaigns.job_names import alias, job_id
 from campaigns.study import Study
 from engine import PHYSICS_VERSION
@@ -64,32 +64,32 @@ def scene_of(collision: Collision, source: str) -> Scene:
 
 
 @dataclass(frozen=True)
-class _Row:
-    """What the jobs of one case share; the only row of a study without cases has no place and no changes."""
+class _Case:
+    """What the jobs of one case share; a study without cases is one case without coordinates and changes."""
 
-    place: dict[str, str]
+    coordinates: dict[str, str]
     changes: dict[str, Any]
     source: str
 
 
 def _jobs(study: Study, source: str) -> Iterator[Job]:
     axes = {} if study.axes is None else _axes(study.axes, source)
-    for row in _rows(study, axes, source):
-        for values in product(*_kept(axes, row).values()):
-            collision = study.collision_with(row.changes | dict(zip(axes, values, strict=True)), row.source)
-            index = {key: value_at(collision, key) for key in axes}
-            for place, member in _members(study, collision):
-                yield _job(member, row.place, {**index, **place}, row.source)
+    for case in _cases(study, axes, source):
+        for values in product(*_kept(axes, case).values()):
+            collision = study.collision_with(case.changes | dict(zip(axes, values, strict=True)), case.source)
+            point = {key: value_at(collision, key) for key in axes}
+            for which, member in _members(study, collision):
+                yield _job(member, case.coordinates, {**point, **which}, case.source)
 
 
 def _members(study: Study, collision: Collision) -> Iterable[tuple[dict[str, Any], Collision]]:
-    """The runs of one cell with their place in it."""
+    """The collisions of one point of the study with their coordinates there."""
     return study.error_bars.members(collision) if study.error_bars else [({}, collision)]
 
 
-def _rows(study: Study, axes: dict[str, Any], source: str) -> Iterator[_Row]:
+def _cases(study: Study, axes: dict[str, Any], source: str) -> Iterator[_Case]:
     if study.cases is None:
-        yield _Row({}, {}, source)
+        yield _Case({}, {}, source)
         return
     if not study.cases:
         raise SceneError(f"{source}: 'cases' is empty; give at least one [[cases]] table")
@@ -98,27 +98,27 @@ def _rows(study: Study, axes: dict[str, Any], source: str) -> Iterator[_Row]:
         first = {key: values[0] for key, values in axes.items()}
         collision = study.collision_with(first | case.settings, origin)
         name = case.name or alias({key: value_at(collision, key) for key in ordered(case.settings) if key not in axes})
-        yield _Row({"case": name}, case.settings, origin)
+        yield _Case({"case": name}, case.settings, origin)
 
 
-def _kept(axes: dict[str, list[Any]], row: _Row) -> dict[str, list[Any]]:
+def _kept(axes: dict[str, list[Any]], case: _Case) -> dict[str, list[Any]]:
     """The values of each axis that a case is run at: all of them, or the one it sets itself."""
-    for key, given in product(axes, row.changes):
+    for key, given in product(axes, case.changes):
         if key.startswith(f"{given}.") or given.startswith(f"{key}."):
-            raise SceneError(f"{row.source}: '{given}' and 'axes.{key}' are parts of each other; keep one of them")
-    for key in axes.keys() & row.changes.keys():
-        if row.changes[key] not in axes[key]:
+            raise SceneError(f"{case.source}: '{given}' and 'axes.{key}' are parts of each other; keep one of them")
+    for key in axes.keys() & case.changes.keys():
+        if case.changes[key] not in axes[key]:
             raise SceneError(
-                f"{row.source}: '{key}' is {row.changes[key]!r}, which 'axes.{key}' does not hold; "
+                f"{case.source}: '{key}' is {case.changes[key]!r}, which 'axes.{key}' does not contain; "
                 "add it there, or leave it out to run the case at all values of the axis"
             )
-    return {key: [row.changes[key]] if key in row.changes else values for key, values in axes.items()}
+    return {key: [case.changes[key]] if key in case.changes else values for key, values in axes.items()}
 
 
-def _job(collision: Collision, place: dict[str, str], index: dict[str, Any], source: str) -> Job:
-    parts = [*place.values(), *([alias(index)] if index else [])]
+def _job(collision: Collision, case: dict[str, str], point: dict[str, Any], source: str) -> Job:
+    parts = [*case.values(), *([alias(point)] if point else [])]
     name = job_id("_".join(parts), scene_of(collision, source).hash())
-    return Job(id=name, directory=f"jobs/{name}", index={**place, **index}, collision=collision)
+    return Job(id=name, directory=f"jobs/{name}", index={**case, **point}, collision=collision)
 
 
 def _axes(table: dict[str, Any], source: str) -> dict[str, list[Any]]:
@@ -136,13 +136,13 @@ def _refuse_second_seeds(study: Study, source: str) -> None:
     """With error bars, seeds are theirs to choose."""
     given = {"collision": study.collision, "axes": flatten(study.axes or {})}
     given |= {f"case {number}": case.settings for number, case in enumerate(study.cases or [], start=1)}
-    for place, settings in given.items():
+    for table, settings in given.items():
         if study.error_bars and "seed" in settings:
-            raise SceneError(f"{source}: {place}: 'seed' is chosen by error_bars.seeds; leave it out here")
+            raise SceneError(f"{source}: {table}: 'seed' is chosen by error_bars.seeds; leave it out here")
 
 
 def _require_scalar_key(key: str, source: str) -> None:
-    known = list(scalar_keys(Collision))
+    known = [with_names_of(key, name) for name in scalar_keys(Collision)]
     rests = [rest for rest in (rest_of(key, name) for name in known) if rest is not None]
     if renamed := current_key(Collision, key):
         raise SceneError(f"{source}: 'axes.{key}' is now 'axes.{renamed}'")
@@ -158,18 +158,21 @@ def _require_values(key: str, values: Any, source: str) -> None:
         raise SceneError(f"{source}: 'axes.{key}' must be a list of at least one value (given {values!r})")
     for number, value in enumerate(values):
         if isinstance(value, list | dict):
-            raise SceneError(f"{source}: 'axes.{key}' must hold single values (given {value!r})")
+            raise SceneError(f"{source}: 'axes.{key}' must be a list of single values (given {value!r})")
         if value in values[:number]:
-            raise SceneError(f"{source}: 'axes.{key}' holds {value!r} twice; give every value once")
+            raise SceneError(f"{source}: 'axes.{key}' contains {value!r} twice; give every value once")
+    if any(value is False for value in values) and any(type(value) in (int, float) for value in values):
+        raise SceneError(
+            f"{source}: 'axes.{key}' mixes false with numbers, among which it has no coordinate: "
+            "set it in [[cases]], or give a number that means the same (for no spin a period of 1e9 h)"
+        )
 
 
 def _refuse_equal_jobs(jobs: list[Job], source: str) -> None:
     for first, second in _equal_pairs(jobs):
         given = " and ".join(", ".join(f"{key} {value}" for key, value in job.index.items()) for job in (first, second))
         same = _scene_hash(first) == _scene_hash(second)
-        fault = (
-            "are the same simulation; keep one of them" if same else "are the same place; give cases different names"
-        )
+        fault = "are the same simulation; keep one of them" if same else "coincide; give cases different names"
         raise SceneError(f"{source}: {given} {fault}")
 
 
@@ -178,7 +181,7 @@ def _scene_hash(job: Job) -> str:
 
 
 def _equal_pairs(jobs: list[Job]) -> Iterator[tuple[Job, Job]]:
-    """Jobs of the same scene, or of the same place in the results."""
+    """Jobs of the same scene, or of the same coordinates in the results."""
     seen: dict[Any, Job] = {}
     for job in jobs:
         for mark in (_scene_hash(job), tuple(job.index.items())):

@@ -4,6 +4,8 @@ import hashlib
 import re
 from typing import Any
 
+from pydantic import BaseModel
+
 LONGEST = 60
 """Characters of an alias that a directory name keeps."""
 HASH_LENGTH = 8
@@ -29,6 +31,8 @@ def belongs_to(name: str, scene: bytes) -> bool:
 
 def _part(key: str, value: Any) -> str:
     letter, width = _SHORT.get(key, (key, 1))
+    if isinstance(value, BaseModel | dict):
+        return letter
     if isinstance(value, int | float) and not isinstance(value, bool):
         return letter + _number(value, width)
     return f"{letter}-{re.sub(r'[^a-z0-9.]+', '-', str(value).lower())}"

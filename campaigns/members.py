@@ -1,4 +1,4 @@
-"""Error bars of a study: every cell is run at two resolutions and with several seeds."""
+"""Error bars of a study: every point is run at two resolutions and with several seeds."""
 
 from collections.abc import Iterator
 from typing import Annotated, Self
@@ -21,11 +21,11 @@ class ErrorBars(Frozen):
     @model_validator(mode="after")
     def _seeds_differ(self) -> Self:
         if len(set(self.seeds)) < len(self.seeds):
-            raise ValueError("'seeds' holds a value twice; give every seed once")
+            raise ValueError("'seeds' contains a value twice; give every seed once")
         return self
 
     def members(self, collision: Collision) -> Iterator[tuple[dict[str, str | int], Collision]]:
-        """Place and settings of every run of one cell, the cheap ones first."""
+        """Coordinates and settings of every collision of one point, the cheap ones first."""
         coarse = max(1, round(self.coarser * collision.particles))
         for resolution, particles in {"coarse": coarse, "fine": collision.particles}.items():
             for seed in self.seeds:

@@ -1,6 +1,6 @@
 """`python -m campaigns.parent_death PARENT COMMAND...`: run COMMAND, which is stopped when the process PARENT ends.
 
-This holds for any end of PARENT, also by SIGKILL. Only Linux offers it; elsewhere COMMAND outlives PARENT, and the
+This is so for any end of PARENT, also by SIGKILL. Only Linux offers it; elsewhere COMMAND outlives PARENT, and the
 next run finds it still running. The signal is sent when the thread that started this process ends, so that thread
 must wait for it.
 """

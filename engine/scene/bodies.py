@@ -1,4 +1,4 @@
-"""Bodies a scene can hold: a sphere or a box of equal particles. SI units throughout."""
+"""Bodies a scene can have: a sphere or a box of equal particles. SI units throughout."""
 
 from abc import abstractmethod
 from typing import Annotated, Self

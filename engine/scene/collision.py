@@ -3,7 +3,7 @@
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
 from engine.errors import SceneError
 from engine.scene.bodies import MOST_PARTICLES, Count, Sphere
@@ -12,17 +12,27 @@ from engine.scene.fields import Finite, Frozen, Number, OrOff, Positive, key
 from engine.scene.input_errors import suggestion
 from engine.scene.material import FractureRules, Material
 from engine.scene.materials import CONSTANTS
-from engine.scene.parameter_sets import DEFAULT, PARAMETER_SETS
+from engine.scene.parameter_sets import DEFAULT, PARAMETER_SETS, over_set
 from engine.scene.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, ViscosityCoefficients
-from engine.scene.tables import overlay
 from engine.scene.two_body import Approach, approach
+
+
+def _as_table(given: Any) -> Any:
+    if isinstance(given, str):
+        raise ValueError(f'Input should be a table, as {{name = "{given}"}}, not text')
+    return given
+
+
+MaterialTable = Annotated[Material, BeforeValidator(_as_table)]
+"""A material whose single constants other tables can change, unlike a name alone."""
 
 
 class Collision(Frozen):
     """Two spheres; t = 0 is the contact of point masses at separation R1 + R2.
 
-    Keys that are not given are those of the parameter set. `materials` has the constants of materials by name, those
-    of a shipped one laid over it.
+    Keys that are not given are those of the parameter set. `materials` has the constants of materials by name: tables,
+    laid over the shipped material that they start from as the parameter set has it, or complete models of Python, which
+    stay as they are.
     """
 
     renamed_keys: ClassVar[dict[str, str]] = {
@@ -36,7 +46,7 @@ class Collision(Frozen):
     angle: Annotated[Number, Field(ge=0.0, le=90.0), key("impact angle, 0 is head-on", "degree")]
     target: Annotated[Target, key("the first body")] = Target()
     projectile: Annotated[Projectile, key("the second body")] = Projectile()
-    materials: Annotated[dict[MaterialName, Material], key("constants of materials by name")] = Field(
+    materials: Annotated[dict[MaterialName, MaterialTable], key("constants of materials by name")] = Field(
         default_factory=dict, validate_default=True
     )
     particles: Annotated[Count, key("particles in the target; those of the projectile have the same spacing", "1")] = (
@@ -62,7 +72,7 @@ class Collision(Frozen):
     def _lies_over_its_parameter_set(cls, given: Any) -> Any:
         if not isinstance(given, dict):
             return given
-        return overlay(PARAMETER_SETS.get(str(given.get("parameter_set", DEFAULT)), {}), given)
+        return over_set(str(given.get("parameter_set", DEFAULT)), given)
 
     @field_validator("materials", mode="before")
     @classmethod
@@ -110,8 +120,10 @@ class Collision(Frozen):
         """Return target and projectile, both still at the origin.
 
         Raises:
-            SceneError: a constant is unknown that strength or fracture needs.
+            SceneError: a constant is unknown that strength or fracture needs, the equations of state have two forms,
+                or a body spins faster than its material carries waves.
         """
+        self._require_one_form()
         radius, count = self.target.radius, self.particles
         small = radius if self.projectile.radius is None else self.projectile.radius
         fewer = max(1, round(count * (small / radius) ** 3))
@@ -120,9 +132,20 @@ class Collision(Frozen):
     def _body(self, name: str, radius: float, particles: int) -> Sphere:
         given: Target | Projectile = getattr(self, name)
         material = self._complete(given.material or self.target.material)
+        _require_slow_spin(name, given.spin_period, radius, material)
         return Sphere(
             name=name, radius=radius, particles=particles, material=material, damage=given.damage, spin=given.spin
         )
+
+    def _require_one_form(self) -> None:
+        first = self.target.material
+        second = self.projectile.material or first
+        forms = [self.materials[name].eos.form for name in (first, second)]
+        if forms[0] != forms[1]:
+            raise SceneError(
+                f"'target.material' {first} and 'projectile.material' {second} must have equations of state of one "
+                f"form ('materials.{first}.eos.form' is {forms[0]}, 'materials.{second}.eos.form' is {forms[1]})"
+            )
 
     def _complete(self, name: str) -> Material:
         """The material of this name, which must have all constants that the collision needs."""
@@ -145,7 +168,7 @@ class Collision(Frozen):
         """Return the scene at the start of the approach, in the frame of the centre of mass.
 
         Raises:
-            SceneError: a constant is unknown that strength or fracture needs.
+            SceneError: as for `bodies_at_contact`.
         """
         start = self.approach()
         target, projectile = self.bodies_at_contact()
@@ -163,6 +186,16 @@ class Collision(Frozen):
             ),
             numerics=self.numerics,
             output=self.output,
+        )
+
+
+def _require_slow_spin(name: str, period: float | None, radius: float, material: Material) -> None:
+    """Refuse a spin whose surface is faster than longitudinal waves: 2 pi R/T > c."""
+    least = 2.0 * np.pi * radius / (3600.0 * material.longitudinal_speed)
+    if period is not None and period < least:
+        raise SceneError(
+            f"'{name}.spin_period' {period} h moves the surface faster than longitudinal waves, "
+            f"{material.longitudinal_speed:.0f} m/s: give at least {1.001 * least:.4g} h"
         )
 
 

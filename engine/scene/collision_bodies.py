@@ -48,4 +48,4 @@ class Projectile(CollisionBody):
 
 def rounded(value: float) -> float:
     """Ten digits of a number: the same collision is then the same scene, and the same job, on every machine."""
-    return float(f"{value:.9e}")
+    return float(f"{value:.9e}") + 0.0  # -0.0 + 0.0 is 0.0, as in a scene that was read

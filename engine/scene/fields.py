@@ -1,4 +1,4 @@
-"""Strict, frozen input models, and the kinds of numbers they hold."""
+"""Strict, frozen input models, and the kinds of numbers in them."""
 
 import hashlib
 import json
@@ -12,7 +12,7 @@ from engine.errors import SceneError
 from engine.scene.input_errors import explain
 
 DEEPEST = 20
-"""Tables and lists inside each other that an input file may hold."""
+"""Tables and lists inside each other that an input file may contain."""
 
 
 def _numeral(value: Any) -> Any:

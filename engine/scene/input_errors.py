@@ -43,36 +43,65 @@ def suggestion(name: str, known: Sequence[str], what: str = "keys", below: Seque
 
 
 def explain(model: type[BaseModel], table: dict[str, Any], error: ValidationError) -> Iterator[str]:
-    """A line for every wrong place; what holds a wrong value is not wrong itself."""
-    places: dict[Location, list[Any]] = {}
+    """Return the lines for all wrong keys of a table; for a table inside it only those of the wrong keys there."""
+    found: dict[Location, list[Any]] = {}
     for issue in error.errors():
-        places.setdefault(_place(table, issue), []).append(issue)
-    for place, issues in places.items():
-        if not any(other[: len(place)] == place != other for other in places):
-            yield _line(model, place, issues)
+        found.setdefault(_location(table, issue), []).append(issue)
+    old = {location[:-1] for location, issues in found.items() if _new_names(model, location, issues[0])}
+    for location, issues in found.items():
+        has_wrong_keys = any(other[: len(location)] == location != other for other in found)
+        may_be_renamed = issues[0]["type"] == "missing" and location[:-1] and location[:-1] in old
+        if not has_wrong_keys and not may_be_renamed:
+            yield from _lines(model, location, issues)
 
 
-def _place(table: Any, issue: Any) -> Location:
+def _location(table: Any, issue: Any) -> Location:
     """The keys that lead to an issue: its location without the names of the models that were tried."""
-    place: Location = ()
+    location: Location = ()
     for part in issue["loc"]:
         keys = range(len(table)) if isinstance(table, list | tuple) else table
         if isinstance(keys, dict | range) and part in keys:
-            place, table = (*place, part), table[part]
-    return (*place, issue["loc"][-1]) if issue["type"] == "missing" else place
+            location, table = (*location, part), table[part]
+    return (*location, issue["loc"][-1]) if issue["type"] == "missing" else location
 
 
-def _line(model: type[BaseModel], place: Location, issues: list[Any]) -> str:
-    key, first = ".".join(str(part) for part in place), issues[0]
-    if first["type"] == "extra_forbidden":
-        if renamed := current_key(model, key):
-            return f"'{key}' is now '{renamed}'"
+def _lines(model: type[BaseModel], location: Location, issues: list[Any]) -> Iterator[str]:
+    key, first = _dotted(location), issues[0]
+    if renamed := _new_names(model, location, first):
+        yield from (f"'{old}' is now '{new}'" for old, new in renamed.items())
+    elif first["type"] == "extra_forbidden":
         nearby = _model_at(model, first["loc"][:-1])
-        return f"unknown key '{key}'{suggestion(str(place[-1]), list(nearby.model_fields), below=_keys_below(nearby))}"
-    if first["type"] == "missing":
-        return f"missing key '{key}'"
-    given = "" if isinstance(first["input"], dict) else f" (given {first['input']!r})"
-    return (f"'{key}': " if key else "") + _allowed(issues) + given
+        hint = suggestion(str(location[-1]), list(nearby.model_fields), below=_keys_below(nearby))
+        yield f"unknown key '{key}'{hint}"
+    elif first["type"] == "missing":
+        yield f"missing key '{key}'"
+    else:
+        given = "" if isinstance(first["input"], dict) else f" (given {first['input']!r})"
+        yield (f"'{key}': " if key else "") + _allowed(issues) + given
+
+
+def _new_names(model: type[BaseModel], location: Location, issue: Any) -> dict[str, str]:
+    """What an unknown key is now; where it is a table whose own keys were renamed too, what each of these is now."""
+    if issue["type"] != "extra_forbidden":
+        return {}
+    key = _dotted(location)
+    renamed = {old: current_key(model, old) for old in map(_dotted, _ends(location, issue["input"]))}
+    names = {old: new for old, new in renamed.items() if new}
+    whole = current_key(model, key)
+    return {key: whole} if whole and all(new == whole + old[len(key) :] for old, new in names.items()) else names
+
+
+def _ends(location: Location, value: Any) -> Iterator[Location]:
+    """The keys of all single values of a table; of a value, its own."""
+    if not isinstance(value, dict) or not value:
+        yield location
+        return
+    for key, inner in value.items():
+        yield from _ends((*location, key), inner)
+
+
+def _dotted(location: Location) -> str:
+    return ".".join(str(part) for part in location)
 
 
 def _allowed(issues: list[Any]) -> str:
@@ -96,13 +125,13 @@ def _tag(model: type[BaseModel]) -> str:
 
 
 def _models_of(model: type[BaseModel], name: int | str) -> list[type[BaseModel]]:
-    """The input models that a field may hold."""
+    """The input models that a field may contain."""
     field = model.model_fields.get(str(name))
     return models_in(field.annotation) if field else []
 
 
 def _keys_below(model: type[BaseModel]) -> list[str]:
-    """Dotted keys of the tables that `model` holds, at any depth."""
+    """Dotted keys of the tables that `model` contains, at any depth."""
     return [
         f"{name}.{ANY_NAME}.{key}" if has_names(field) else f"{name}.{key}"
         for name, field in model.model_fields.items()
@@ -112,6 +141,6 @@ def _keys_below(model: type[BaseModel]) -> list[str]:
 
 
 def _tables_in(field: FieldInfo) -> list[type[BaseModel]]:
-    """The input models that a field may hold as a table, not those in lists."""
+    """The input models that a field may contain as a table, not those in lists."""
     marked = [mark.model for mark in field.metadata if isinstance(mark, KeysOf)]
     return marked if get_origin(field.annotation) is tuple else marked + models_in(field.annotation)

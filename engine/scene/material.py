@@ -61,7 +61,9 @@ class Material(Frozen):
         if not isinstance(table, dict):
             return table
         name = table.get("name")
-        if isinstance(name, str) and name in CONSTANTS:
+        if not isinstance(name, str | None):
+            raise ValueError(f"'name' must be text (given {name!r})")
+        if name in CONSTANTS:
             return overlay(CONSTANTS[name], table)
         absent = [key for key, field in cls.model_fields.items() if field.is_required() and key not in table]
         if absent and not cls.renamed_keys.keys() & table.keys():

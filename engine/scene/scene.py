@@ -69,7 +69,7 @@ class Wall(Frozen):
     point: Annotated[Vector, key("any point of the plane", "m")] = (0.0, 0.0, 0.0)
     normal: Annotated[Vector, key("direction into the matter, of any length", "1")] = (0.0, 0.0, 1.0)
     friction: Annotated[
-        Literal["stick"] | NonNegative, key("coefficient of Coulomb friction; `stick` holds what touches it", "1")
+        Literal["stick"] | NonNegative, key("coefficient of Coulomb friction; `stick` stops what touches it", "1")
     ] = 0.0
 
     @model_validator(mode="after")
@@ -151,7 +151,7 @@ class Scene(Frozen):
     def _has_the_gravity_of_its_balance(self) -> Self:
         if not self.physics.gravity and any(isinstance(body, Sphere) and body.hydrostatic for body in self.bodies):
             raise ValueError(
-                "'hydrostatic' pressure needs self-gravity to hold it: leave it out of the body, or set it to false"
+                "'hydrostatic' pressure needs self-gravity to balance it: leave it out of the body, or set it to false"
             )
         return self
 
@@ -183,7 +183,7 @@ class Scene(Frozen):
     def _particles_can_be_counted(self) -> Self:
         if self.particles > MOST_PARTICLES:
             raise ValueError(
-                f"'bodies' hold {self.particles} particles in all; at most {MOST_PARTICLES} can be counted"
+                f"'bodies' have {self.particles} particles in all; at most {MOST_PARTICLES} can be counted"
             )
         return self
 
@@ -241,9 +241,9 @@ def scene_in(directory: Path) -> Scene:
     """
     found = [path for path in (directory / "scene.json", directory / "scene.toml") if path.is_file()]
     if not found:
-        raise SceneError(f"{directory}: holds no scene.json or scene.toml; write the scene to run there first")
+        raise SceneError(f"{directory}: contains no scene.json or scene.toml; write the scene to run there first")
     if len(found) > 1:
-        raise SceneError(f"{directory}: holds scene.json and scene.toml; keep the one to run")
+        raise SceneError(f"{directory}: contains scene.json and scene.toml; keep the one to run")
     return read_scene(found[0])
 
 

@@ -37,6 +37,35 @@ BAD_STUDIES = {
         HEAD + GRID + "[[cases]]\nprojectile_radius = 1e4\n",
         ["case 1: 'projectile_radius' is now 'projectile.radius'"],
     ),
+    "old constant of a case": (
+        HEAD + GRID + "[[cases]]\nmaterial.damaged_friction = 0.5\n",
+        ["case 1: 'material.damaged_friction' is now 'materials.basalt.friction'"],
+    ),
+    "old constant of all": (
+        HEAD + "[collision]\nmaterial = {damaged_friction = 0.5}\n" + GRID,
+        ["collision: 'material.damaged_friction' is now 'materials.basalt.friction'"],
+    ),
+    "name of a material in place of its table": (
+        HEAD + "[collision]\nmaterials.basalt = 'ice'\n" + GRID + "[[cases]]\nmaterials.basalt.friction = 0.3\n",
+        ["'materials.basalt'", 'a table, as {name = "ice"}, not text'],
+    ),
+    "name of a material in place of its table in a case": (
+        HEAD + GRID + "[[cases]]\nmaterials.mine = 'ice'\n",
+        ["case 1: 'materials.mine'", 'a table, as {name = "ice"}, not text'],
+    ),
+    "two forms of equation of state": (
+        HEAD + "[collision]\nmaterials.hard = {name = 'basalt', eos = {form = 'murnaghan', K = 2e10, n = 4}}\n"
+        "projectile.material = 'hard'\n" + GRID,
+        ["'target.material' basalt and 'projectile.material' hard", "'materials.hard.eos.form' is murnaghan"],
+    ),
+    "spin without end": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\ntarget.spin_period = [1e-320]\n",
+        ["'target.spin_period' 1e-320 h", "give at least"],
+    ),
+    "false among numbers": (
+        HEAD + "[axes]\nvelocity = [1]\nangle = [5]\ntarget.spin_period = [false, 8]\n",
+        ["'axes.target.spin_period' mixes false with numbers", "[[cases]]", "1e9 h"],
+    ),
     "material that lacks constants": (
         HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nprojectile.material = ['basalt', 'ice']\n",
         ["'materials.ice' lacks cohesion", "which strength needs: give them"],
@@ -51,7 +80,7 @@ BAD_STUDIES = {
     ),
     "misspelt constant as axis": (
         HEAD + "[axes]\nvelocity = [1]\nangle = [5]\nmaterials.basalt.frictoin = [1]\n",
-        ["unknown key 'axes.materials.basalt.frictoin'", "did you mean 'materials.NAME.friction'"],
+        ["unknown key 'axes.materials.basalt.frictoin'", "did you mean 'materials.basalt.friction'"],
     ),
     "switch as velocity": (HEAD + "[axes]\nvelocity = [true]\nangle = [5]\n", ["'velocity'", "not true or false"]),
     "negative radius": (
@@ -104,7 +133,7 @@ BAD_STUDIES = {
     ),
     "cases of the same name": (
         HEAD + GRID + "[[cases]]\nname = 'a'\n[[cases]]\nname = 'a'\ntarget.radius = 1e4\n",
-        ["case a, velocity 100.0", "same place", "different names"],
+        ["case a, velocity 100.0", "coincide", "different names"],
     ),
     "name of a case that leaves the directory": (HEAD + GRID + "[[cases]]\nname = '../up'\n", ["name", "../up"]),
     "neither axes nor cases": (HEAD, ["give [axes]", "or [[cases]]"]),
@@ -200,6 +229,38 @@ def test_other_settings(command, write_study, runs, tree):
     assert tree(runs) == before
 
 
+def test_a_campaign_of_another_version_is_kept_and_told_about_in_few_lines(command, write_study, runs, tree):
+    command("run", write_study(angle="[5, 15]"))
+    file = runs / "small" / "campaign.json"
+    content = json.loads(file.read_text())
+    for job in content["jobs"]:
+        job["collision"] |= {"friction": 0.5, "radius": 5e4, "projectile_radius": None, "material": {"rho0": 2700.0}}
+    file.write_text(json.dumps(content))
+    before = tree(runs)
+    for verb in ("run", "plan", "status", "resume"):
+        result = command(verb, write_study())
+        assert result.code == 2
+        assert "'jobs.0.collision.friction' is now" in result.err and "jobs.1" not in result.err
+        assert "keep it" in result.err and "RUNS=DIR" in result.err and "delete" not in result.err
+        assert "and 13 more like these" in result.err and len(result.err.splitlines()) == 5
+    assert tree(runs) == before
+
+
+@pytest.mark.parametrize("content", ["[]", '{"jobs": ' + "[" * 30 + "]" * 30 + "}"])
+def test_json_that_is_no_campaign_is_kept(content, command, write_study, runs):
+    command("run", write_study())
+    (runs / "small" / "campaign.json").write_text(content)
+    result = command("run", write_study())
+    assert result.code == 2 and "keep it" in result.err and "delete" not in result.err
+
+
+def test_many_other_settings_are_told_in_short(command, write_study):
+    command("run", write_study())
+    result = command("run", write_study(collision="parameter_set = 'talk'"))
+    assert result.code == 2
+    assert "fracture.flaws covered there and 2NlnN in the study" in result.err and ", and 2 more)" in result.err
+
+
 def test_same_settings_in_other_words(command, write_study):
     command("run", write_study())
     assert command("plan", write_study(collision="target.radius = 50_000\nseed = 1")).code == 0
@@ -233,7 +294,7 @@ def test_damaged_campaign_file(command, write_study, runs):
 def test_no_campaign_yet(verb, command, write_study, runs):
     result = command(verb, write_study())
     assert result.code == 2
-    assert "holds no campaign" in result.err
+    assert "contains no campaign" in result.err
     assert not runs.exists()
 
 

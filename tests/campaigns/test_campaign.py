@@ -15,7 +15,7 @@ from engine.job.storage import write_json
 
 
 def of_another_version(directory: Path, **changes: Any) -> Path:
-    """A campaign whose study and collision hold keys that this version does not know."""
+    """A campaign whose study and collision contain keys that this version does not know."""
     job = {"id": "a-0", "directory": "jobs/a-0", "index": {"angle": 5}, "collision": {"rock": {"hardness": [1, None]}}}
     content = {"name": "old", "physics_version": 0, "study": {"grid": {"angles": 3}}, "dims": ["angle"]}
     write_json(directory / "campaign.json", content | {"coords": {"angle": [5, 15]}, "jobs": [job]} | changes)

@@ -12,6 +12,7 @@ from campaigns.expansion import expand
 from campaigns.study import SHIPPED, Study, find_study, read_study
 from engine.scene.collision import Collision
 from engine.scene.fields import validate
+from engine.scene.scene import Scene
 
 VELOCITIES = st.lists(st.integers(50, 400), min_size=1, max_size=3, unique=True)
 ANGLES = st.lists(st.integers(0, 90), min_size=1, max_size=3, unique=True)
@@ -83,7 +84,7 @@ def test_materials_spins_and_their_constants_are_axes():
         "velocity": [100],
         "angle": [5],
         "projectile.material": ["basalt", "ice"],
-        "target.spin_period": [False, 4, 8],
+        "target.spin_period": [1e9, 4, 8],
         "materials.basalt.friction": [0.5, 0.7],
     }
     study = Study(name="n", collision={"materials": {"ice": ice}}, axes=axes)
@@ -95,7 +96,7 @@ def test_materials_spins_and_their_constants_are_axes():
         "projectile.material",
         "target.spin_period",
     )
-    assert campaign.coords["target.spin_period"] == (None, 4.0, 8.0)
+    assert campaign.coords["target.spin_period"] == (1e9, 4.0, 8.0)
     assert len({job.id for job in campaign.jobs}) == 12
     last = campaign.jobs[-1]
     assert last.id.startswith("v0100_a05_materials.basalt.friction0.7_projectile.material-i")
@@ -131,6 +132,12 @@ def test_case_names_do_not_depend_on_other_cases():
     assert both.coords["case"] == ("v0100_a05", "v0100_a05_end_time10")
 
 
+@pytest.mark.parametrize("key", ["materials.basalt", "viscosity", "materials"])
+def test_a_case_that_sets_a_whole_table_is_named_by_its_key(key):
+    (job,) = expand(Study(name="n", collision={"velocity": 1, "angle": 5}, cases=[nest({key: {}})]), "test").jobs
+    assert job.index == {"case": key}
+
+
 def test_every_case_is_run_for_every_combination_of_the_axes():
     cases = [{}, {"name": "fine", "particles": 40000}]
     campaign = expand(Study(name="n", axes={"velocity": [1, 2], "angle": [5], "seed": [1, 2]}, cases=cases), "test")
@@ -160,18 +167,18 @@ def test_a_case_that_sets_an_axis_is_run_at_that_value_only():
 
 def test_false_leaves_parts_out_of_the_cases_and_axes_of_a_study():
     cases = [{}, {"gravity": False}, {"viscosity": False, "fracture": False, "name": "loose"}]
-    shared = {"viscosity": {"shear": 1e5}}
-    axes = {"velocity": [200], "angle": [5], "output.snapshot_interval": [100, False]}
+    shared = {"viscosity": {"shear": 1e5}, "output": {"snapshot_interval": False}}
+    axes = {"velocity": [200], "angle": [5], "seed": [1, 2]}
     campaign = expand(Study(name="n", collision=shared, axes=axes, cases=cases), "test")
     physics = [job.collision.scene().physics for job in campaign.jobs[::2]]
     assert [part.gravity is None for part in physics] == [False, True, False]
     assert [part.viscosity is None for part in physics] == [False, False, True]
     assert [part.fracture is None for part in physics] == [False, False, True]
-    assert [job.collision.output.snapshot_interval for job in campaign.jobs] == [100.0, None] * 3
+    assert [job.collision.output.snapshot_interval for job in campaign.jobs] == [None] * 6
     assert validate(Campaign, campaign.content(), "test") == campaign
 
 
-def test_error_bars_run_every_cell_at_two_resolutions_with_all_seeds():
+def test_error_bars_run_every_point_at_two_resolutions_with_all_seeds():
     bars = {"coarser": 0.3, "seeds": [4, 2]}
     study = Study(name="n", collision={"particles": 1000}, axes={"velocity": [1, 2], "angle": [5]}, error_bars=bars)
     campaign = expand(study, "test")
@@ -203,6 +210,14 @@ def test_every_shipped_study_says_what_it_is_for_and_runs_no_simulation_twice(pa
     assert len(study.description.split()) > 3
     scenes = [job.collision.scene().canonical() for job in campaign.jobs]
     assert len(set(scenes)) == len(scenes) > 0
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_scene_has_the_hash_of_its_job_also_after_it_was_written_and_read(path):
+    for job in expand(read_study(path), path.stem).jobs:
+        scene = job.collision.scene()
+        assert Scene.model_validate_json(scene.model_dump_json()).hash() == scene.hash()
+        assert job.id.endswith(scene.hash()[:8])
 
 
 def test_talk_cases_end_at_their_own_times():

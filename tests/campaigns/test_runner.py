@@ -82,6 +82,44 @@ def test_a_setting_that_becomes_an_axis_keeps_finished_jobs(command, write_study
     assert len(list(runs.glob("small/jobs/*"))) == 4
 
 
+ICE = "materials.ice = {cohesion = 1e6, intact_friction = 1.0, melt_energy = 7e5, friction = 0.6}"
+
+
+@pytest.mark.parametrize("further", ["", "seed = [1, 2]"])
+def test_a_new_material_keeps_finished_jobs(further, command, write_study, runs):
+    command("run", write_study())
+    axes = f"[5]\nprojectile.material = ['basalt', 'ice']\n{further}"
+    assert command("run", write_study(collision=ICE, angle=axes)).code == 0
+    assert starts(runs, "v0100_a05") == ["from step 0"]
+    assert len(list(runs.glob("small/jobs/*"))) == (8 if further else 4)
+    fewer = write_study(velocity="[200]", angle="[5, 10]")
+    assert command("plan", fewer).code == 0, "constants of ice are no settings of a study without it"
+
+
+def test_a_new_spin_keeps_finished_jobs(command, write_study, runs):
+    command("run", write_study(collision="target.spin_period = 8"))
+    axes = "[5]\ntarget.spin_period = [8, 4]\ntarget.spin_obliquity = [0, 90]"
+    assert command("run", write_study(angle=axes)).code == 0
+    assert starts(runs, "v0100_a05") == ["from step 0"]
+    assert len(list(runs.glob("small/jobs/*"))) == 8
+
+
+def test_a_setting_that_becomes_one_of_several_cases_keeps_finished_jobs(command, write_study, runs):
+    command("run", write_study(collision="target.spin_period = 8"))
+    cases = "[5]\n[[cases]]\nname = 'still'\n[[cases]]\nname = 'turning'\ntarget.spin_period = 8"
+    assert command("run", write_study(angle=cases)).code == 0
+    assert starts(runs, "v0100_a05") == ["from step 0"]
+    assert len(list(runs.glob("small/jobs/*"))) == 4
+
+
+def test_a_constant_of_a_material_in_use_is_not_changed_in_a_campaign(command, write_study):
+    command("run", write_study(collision=f"{ICE}\nprojectile.material = 'ice'"))
+    softer = ICE.replace("0.6", "0.5")
+    result = command("run", write_study(collision=f"{softer}\nprojectile.material = 'ice'"))
+    assert result.code == 2
+    assert "materials.ice.friction 0.6 there and 0.5 in the study" in result.err
+
+
 def test_error_bars_keep_finished_jobs(command, write_study, runs):
     command("run", write_study(velocity="[100]"))
     command("run", write_study(velocity="[100]", angle="[5]\n[error_bars]\nseeds = [1, 2]"))

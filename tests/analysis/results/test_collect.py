@@ -298,7 +298,7 @@ def test_further_axes_keep_their_names(tmp_path: Path) -> None:
 
 
 def test_a_directory_without_a_campaign_is_named(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"holds no campaign\.json"):
+    with pytest.raises(SceneError, match=r"contains no campaign\.json"):
         collect(tmp_path)
     write_json(tmp_path / "campaign.json", {"name": "x"})
     with pytest.raises(SceneError, match=r"campaign\.json: missing key 'physics_version'"):

@@ -123,6 +123,24 @@ def test_a_rule_of_fracture_leaves_the_others_of_the_set(name):
     assert Collision.model_validate_json(collision.canonical()) == collision
 
 
+def test_the_constants_of_a_set_lie_under_every_table_that_starts_from_their_material():
+    tables = {"mine": {"name": "basalt", "weibull_k": 1e35}, "slick": {"name": "basalt", "friction": 0.3}}
+    talk = made(parameter_set="talk", materials=tables).materials
+    assert (talk["basalt"].friction, talk["mine"].friction, talk["slick"].friction) == (0.945, 0.945, 0.3)
+    assert talk["mine"].weibull_k == 1e35
+    frozen = made(parameter_set="talk", materials={"basalt": {"name": "ice"}}).materials["basalt"]
+    assert frozen.friction is None
+    collision = made(parameter_set="talk", materials=tables, target={"material": "mine"})
+    assert Collision.model_validate_json(collision.canonical()) == collision
+
+
+def test_rules_given_in_python_leave_the_others_of_the_set_and_a_material_given_in_python_is_complete():
+    rules = Collision(velocity=1.0, angle=1.0, parameter_set="talk", fracture=FractureRules(growth_range=2.0)).fracture
+    assert rules == rules_of("talk").model_copy(update={"growth_range": 2.0})
+    collision = Collision(velocity=1.0, angle=1.0, parameter_set="talk", materials={"basalt": named("basalt")})
+    assert collision.materials == {"basalt": named("basalt")}
+
+
 def test_the_set_of_sugiura_2018_leaves_basalt_as_it_ships():
     collision = Collision(velocity=200.0, angle=15.0)
     assert collision.materials == {"basalt": named("basalt")}
@@ -205,6 +223,25 @@ def test_a_prograde_spin_adds_to_the_angular_momentum_of_the_impact_and_a_retrog
     np.testing.assert_allclose(retrograde - still, [0.0, 0.0, -own], rtol=1e-9)
 
 
+@pytest.mark.parametrize("body", ["target", "projectile"])
+@pytest.mark.parametrize("period", [1e-320, 1e-6, 0.016])
+def test_a_surface_faster_than_waves_in_the_material_is_refused_with_the_least_period(body, period):
+    with pytest.raises(SceneError, match=rf"'{body}\.spin_period' {period} h .* give at least (\S+) h") as error:
+        made(**{body: {"spin_period": period}}).scene()
+    least = float(str(error.value).split()[-2])
+    assert least == pytest.approx(2.0 * np.pi * 50e3 / named("basalt").longitudinal_speed / 3600.0, rel=2e-3)
+    assert made(**{body: {"spin_period": least}}).scene()
+
+
+def test_two_forms_of_equation_of_state_are_refused_by_the_keys_of_the_collision():
+    hard = {"name": "basalt", "eos": {"form": "murnaghan", "K": 2e10, "n": 4.0}}
+    with pytest.raises(SceneError) as error:
+        made(materials={"hard": hard}, projectile={"material": "hard"}).scene()
+    for words in ("'target.material' basalt", "'projectile.material' hard", "'materials.hard.eos.form' is murnaghan"):
+        assert words in str(error.value)
+    assert made(materials={"hard": hard}, target={"material": "hard"}).scene()
+
+
 def test_bodies_may_start_damaged():
     assert [body.damage for body in made(target={"damage": 1.0}).scene().bodies] == [1.0, 0.0]
 
@@ -240,7 +277,15 @@ OLD_KEYS = {
     "radius": ({"radius": 1e4}, "'radius' is now 'target.radius'"),
     "radius of the projectile": ({"projectile_radius": 1e4}, "'projectile_radius' is now 'projectile.radius'"),
     "friction": ({"friction": 0.5}, "'friction' is now 'materials.basalt.friction'"),
-    "material": ({"material": {"rho0": 1.0}}, "'material' is now 'materials.basalt'"),
+    "material": ({"material": "basalt"}, "'material' is now 'materials.basalt'"),
+    "constant of the material": (
+        {"material": {"damaged_friction": 0.5}},
+        "'material.damaged_friction' is now 'materials.basalt.friction'",
+    ),
+    "constant of Tillotson": (
+        {"material": {"tillotson": {"A": 1e10}}},
+        "'material.tillotson.A' is now 'materials.basalt.eos.A'",
+    ),
     "damaged friction": (
         {"materials": {"ice": {"damaged_friction": 0.5}}},
         "'materials.ice.damaged_friction' is now 'materials.ice.friction'",
@@ -254,6 +299,18 @@ def test_an_old_key_is_refused_with_the_new_one_named(change, told):
     with pytest.raises(SceneError) as error:
         validate(Collision, {"velocity": 200.0, "angle": 15.0, **change}, "study.toml")
     assert str(error.value).startswith("study.toml: ") and str(error.value).endswith(told)
+    assert "\n" not in str(error.value)
+
+
+def test_every_old_key_of_a_table_is_told_its_new_name():
+    old = {"rho0": 2600.0, "damaged_friction": 0.5}
+    with pytest.raises(SceneError) as error:
+        validate(Collision, {"velocity": 200.0, "material": old}, "study.toml")
+    assert sorted(line.removeprefix("study.toml: ") for line in str(error.value).splitlines()) == [
+        "'material.damaged_friction' is now 'materials.basalt.friction'",
+        "'material.rho0' is now 'materials.basalt.rho0'",
+        "missing key 'angle'",
+    ]
 
 
 BAD = {
@@ -289,6 +346,8 @@ BAD = {
     ),
     "no table of materials": ({"materials": 3}, "'materials'", "a table of keys", "3"),
     "misspelt choice of material": ({"target": {"material": "icee"}}, "'target.material'", "did you mean 'ice'"),
+    "name alone as a material": ({"materials": {"mine": "basalt"}}, "'materials.mine'", 'as {name = "basalt"}'),
+    "number as a name": ({"materials": {"mine": {"name": 3}}}, "'materials.mine'", "'name' must be text (given 3)"),
     "misspelt constants": ({"materials": {"bsalt": {"friction": 1}}}, "'bsalt'", "did you mean 'basalt'", "rho0"),
     "key of a material": ({"rho0": 1.0}, "unknown key 'rho0'", "did you mean 'materials.NAME.rho0'"),
     "no day": ({"target": {"spin_period": 0.0}}, "'target.spin_period'", "greater than 0", "0.0"),

@@ -64,6 +64,9 @@ def test_a_body_without_material_is_basalt_and_the_scene_has_its_constants_writt
         ({"name": "basalt", "damaged_friction": 0.5}, ["'bodies.1.material.damaged_friction' is now", ".friction'"]),
         ({"name": "ice", "frictoin": 0.5}, ["unknown key 'bodies.1.material.frictoin'", "did you mean 'friction'"]),
         ({"name": "ice", "eos": {"A": -1.0}}, ["'bodies.1.material.eos.A'", "greater than 0", "-1.0"]),
+        ({"damaged_friction": 0.5}, ["'bodies.1.material.damaged_friction' is now", ".friction'"]),
+        ({"rho0": 1.0, "shear_modulus": 1.0, "tillotson": {}}, ["'bodies.1.material.tillotson' is now", ".eos'"]),
+        ({"name": 3}, ["'bodies.1.material'", "'name' must be text (given 3)"]),
         (3, ["'bodies.1.material'", "table of keys", "3"]),
     ],
 )

@@ -31,7 +31,7 @@ def test_points_are_as_far_apart_as_in_a_face_centred_lattice(count):
     x = points(count)
     if count > 1:
         nearest = cKDTree(x).query(x, k=2)[0][:, 1]
-        # a cube of side h 4^(1/3) holds four points, the nearest at 1/sqrt(2) of its side
+        # a cube of side h 4^(1/3) contains four points, the nearest at 1/sqrt(2) of its side
         np.testing.assert_allclose(nearest, spacing(count) * 4.0 ** (1.0 / 3.0) / np.sqrt(2.0), rtol=1e-9)
 
 

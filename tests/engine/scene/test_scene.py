@@ -49,7 +49,7 @@ BAD = {
         "fracture = false",
     ),
     "fracture without strength": ({"physics": {"strength": False}}, "'fracture'", "strength = true"),
-    "pressure that nothing holds": (
+    "pressure that nothing balances": (
         {"bodies": [{**BODY, "hydrostatic": True}], "physics": {"gravity": None}},
         "'hydrostatic'",
         "needs self-gravity",
@@ -70,7 +70,7 @@ BAD = {
     "switch in a vector": (with_body(position=[0.0, False, 0.0]), "'bodies.1.position.1'", "not true or false"),
     "more particles than indices": (with_body(particles=10**10), "'bodies.1.particles'", "less than", "1073741824"),
     "far more particles": (with_body(particles=1e24), "'bodies.1.particles'", "too large", "1e+24"),
-    "too many particles in all": (with_body(particles=2**30), "'bodies' hold 1073742824 particles in all", "at most"),
+    "too many particles in all": (with_body(particles=2**30), "'bodies' have 1073742824 particles in all", "at most"),
     "no body": ({"bodies": [3]}, "'bodies.0'", "a table of keys", "3"),
     "sphere and box": ({"bodies": [{**BOX, "radius": 1.0}]}, "unknown key 'bodies.0.radius'", "known keys", "lattice"),
     "box without lattice": ({"bodies": [{"size": [1.0, 1.0, 1.0]}]}, "missing key 'bodies.0.lattice'"),
@@ -119,7 +119,7 @@ def test_a_directory_without_a_scene_says_what_to_write(tmp_path: Path):
 def test_a_directory_with_two_scenes_is_refused(tmp_path: Path):
     for name in ("scene.json", "scene.toml"):
         (tmp_path / name).write_text("")
-    with pytest.raises(SceneError, match=r"holds scene\.json and scene\.toml"):
+    with pytest.raises(SceneError, match=r"contains scene\.json and scene\.toml"):
         scene_in(tmp_path)
 
 
