@@ -15,7 +15,7 @@ from campaigns.study import Study
 from engine import PHYSICS_VERSION
 from engine.errors import SceneError
 from engine.scene.collision import Collision
-from engine.scene.input_errors import suggestion
+from engine.scene.input_errors import did_you_mean
 from engine.scene.keys import current_key
 from engine.scene.scene import Scene
 
@@ -147,7 +147,7 @@ def _require_scalar_key(key: str, source: str) -> None:
     if renamed := current_key(Collision, key):
         raise SceneError(f"{source}: 'axes.{key}' is now 'axes.{renamed}'")
     if not rests:
-        raise SceneError(f"{source}: unknown key 'axes.{key}'{suggestion(key, known)}")
+        raise SceneError(f"{source}: unknown key 'axes.{key}'{did_you_mean(key, known)}")
     if any(rests):
         inside = ", ".join(f"{key}.{rest}" for rest in rests)
         raise SceneError(f"{source}: 'axes.{key}' is a table; name one of its values: {inside}")

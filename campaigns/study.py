@@ -10,7 +10,7 @@ from campaigns.members import ErrorBars
 from engine.errors import SceneError
 from engine.scene.collision import Collision
 from engine.scene.fields import Frozen, key, read_table, validate
-from engine.scene.input_errors import KeysOf, suggestion
+from engine.scene.input_errors import KeysOfModel, did_you_mean
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)]
 
@@ -40,7 +40,7 @@ class Study(Frozen):
     name: Annotated[Name, key("name of the study and of its results directory")]
     description: Annotated[str, key("what the study is for")] = ""
     collision: Annotated[
-        dict[str, Any], KeysOf(Collision), Field(default_factory=dict), key("settings of all its collisions")
+        dict[str, Any], KeysOfModel(Collision), Field(default_factory=dict), key("settings of all its collisions")
     ]
     axes: Annotated[dict[str, Any] | None, key("values of dotted keys of the collision")] = None
     cases: Annotated[list[Case] | None, key("settings of each collision where they are no grid")] = None
@@ -80,7 +80,7 @@ def find_study(name: str) -> Path:
         return SHIPPED / f"{name}.toml"
     if Path(name).exists():
         return Path(name)
-    raise SceneError(f"no study '{name}': neither a file nor a shipped study{suggestion(name, names, 'studies')}")
+    raise SceneError(f"no study '{name}': neither a file nor a shipped study{did_you_mean(name, names, 'studies')}")
 
 
 def read_study(path: Path) -> Study:

@@ -42,7 +42,7 @@ class Worker(WorkerPlugin):  # type: ignore[misc]  # dask has no types
     idempotent = True  # a second campaign must not replace the worker on which engines of the first run
 
     def __init__(self) -> None:
-        self._running: dict[Path, subprocess.Popen[bytes]] = {}
+        self._running: dict[subprocess.Popen[bytes], Path] = {}
         self._signalled: set[tuple[subprocess.Popen[bytes], int]] = set()
 
     def run(self, directory: Path, threads: int, arch: str, retry_failed: bool) -> EngineExit:
@@ -59,7 +59,7 @@ class Worker(WorkerPlugin):  # type: ignore[misc]  # dask has no types
 
         The same signal a second time might end an engine that writes its checkpoint after the first.
         """
-        processes = [process for directory, process in list(self._running.items()) if directory in directories]
+        processes = [process for process, directory in list(self._running.items()) if directory in directories]
         alive = [process for process in processes if process.poll() is None]
         for process in alive:
             if (process, number) not in self._signalled:
@@ -73,11 +73,11 @@ class Worker(WorkerPlugin):  # type: ignore[misc]  # dask has no types
         process = subprocess.Popen(
             tethered(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, process_group=0
         )
-        self._running[directory] = process
+        self._running[process] = directory
         try:
             yield process
         finally:
-            del self._running[directory]
+            del self._running[process]
 
 
 class DaskWorker(Protocol):

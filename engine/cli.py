@@ -18,7 +18,7 @@ from rich.console import Console, RenderableType
 from engine.device.options import Arch, choose
 from engine.errors import ExitCode, JobBusyError, JobError, RunFault, SceneError, in_words
 from engine.job.directory import JobDirectory, JobState, Status
-from engine.scene.input_errors import suggestion
+from engine.scene.input_errors import did_you_mean
 from engine.scene.scene import Scene, scene_at, scene_in
 
 application = typer.Typer(
@@ -199,7 +199,7 @@ def _errors_as_exit_codes(source: Path) -> Iterator[None]:
 
 def _require_known(names: Sequence[str] | None, known: Collection[str], what: str) -> None:
     for name in set(names or ()) - set(known):
-        _exit(f"unknown {what} '{name}'{suggestion(name, list(known), f'{what}s')}", ExitCode.BAD_INPUT)
+        _exit(f"unknown {what} '{name}'{did_you_mean(name, list(known), f'{what}s')}", ExitCode.BAD_INPUT)
 
 
 def _print_table(table: RenderableType) -> None:

@@ -9,12 +9,12 @@ from engine.errors import SceneError
 from engine.scene.bodies import MOST_PARTICLES, Count, Sphere
 from engine.scene.collision_bodies import MaterialName, Projectile, Target, rounded
 from engine.scene.fields import Finite, Frozen, Number, OrOff, Positive, key
-from engine.scene.input_errors import suggestion
+from engine.scene.input_errors import did_you_mean
 from engine.scene.material import FractureRules, Material
 from engine.scene.materials import CONSTANTS
 from engine.scene.parameter_sets import DEFAULT, PARAMETER_SETS, over_set
 from engine.scene.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, ViscosityCoefficients
-from engine.scene.two_body import Approach, approach
+from engine.scene.two_body import Approach, approach_state
 
 
 def _as_table(given: Any) -> Any:
@@ -87,7 +87,7 @@ class Collision(Frozen):
     @model_validator(mode="after")
     def _parameter_set_is_known(self) -> Self:
         if self.parameter_set not in PARAMETER_SETS:
-            hint = suggestion(self.parameter_set, list(PARAMETER_SETS), "parameter sets")
+            hint = did_you_mean(self.parameter_set, list(PARAMETER_SETS), "parameter sets")
             raise ValueError(f"unknown parameter_set '{self.parameter_set}'{hint}")
         return self
 
@@ -97,7 +97,9 @@ class Collision(Frozen):
         for body in ("target", "projectile"):
             name = getattr(self, body).material
             if name is not None and name not in self.materials:
-                raise ValueError(f"'{body}.material': unknown material '{name}'{suggestion(name, known, 'materials')}")
+                hint = did_you_mean(name, known, "materials")
+                own = f'a material of your own needs a table, as materials.{name} = {{name = "basalt"}}'
+                raise ValueError(f"'{body}.material': unknown material '{name}'{hint}; {own}")
         return self
 
     @model_validator(mode="after")
@@ -162,7 +164,7 @@ class Collision(Frozen):
         mass = target.mass + projectile.mass if self.gravity else 0.0
         position = contact * np.array([np.cos(angle), np.sin(angle), 0.0])
         velocity = np.array([-self.velocity, 0.0, 0.0])
-        return approach(position, velocity, mass, self.start_separation * contact)
+        return approach_state(position, velocity, mass, self.start_separation * contact)
 
     def scene(self) -> Scene:
         """Return the scene at the start of the approach, in the frame of the centre of mass.

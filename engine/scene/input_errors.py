@@ -22,13 +22,13 @@ PLAIN = {
 
 
 @dataclass(frozen=True)
-class KeysOf:
+class KeysOfModel:
     """Marks a plain table whose keys are those of a model, checked later."""
 
     model: type[BaseModel]
 
 
-def suggestion(name: str, known: Sequence[str], what: str = "keys", below: Sequence[str] = ()) -> str:
+def did_you_mean(name: str, known: Sequence[str], what: str = "keys", below: Sequence[str] = ()) -> str:
     """The known name that was meant, or all of them, as the tail of an error message.
 
     Args:
@@ -71,7 +71,7 @@ def _lines(model: type[BaseModel], location: Location, issues: list[Any]) -> Ite
         yield from (f"'{old}' is now '{new}'" for old, new in renamed.items())
     elif first["type"] == "extra_forbidden":
         nearby = _model_at(model, first["loc"][:-1])
-        hint = suggestion(str(location[-1]), list(nearby.model_fields), below=_keys_below(nearby))
+        hint = did_you_mean(str(location[-1]), list(nearby.model_fields), below=_keys_below(nearby))
         yield f"unknown key '{key}'{hint}"
     elif first["type"] == "missing":
         yield f"missing key '{key}'"
@@ -142,5 +142,5 @@ def _keys_below(model: type[BaseModel]) -> list[str]:
 
 def _tables_in(field: FieldInfo) -> list[type[BaseModel]]:
     """The input models that a field may contain as a table, not those in lists."""
-    marked = [mark.model for mark in field.metadata if isinstance(mark, KeysOf)]
+    marked = [mark.model for mark in field.metadata if isinstance(mark, KeysOfModel)]
     return marked if get_origin(field.annotation) is tuple else marked + models_in(field.annotation)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from engine.scene.fields import Frozen, NonNegative, Number, Positive, key
-from engine.scene.input_errors import suggestion
+from engine.scene.input_errors import did_you_mean
 from engine.scene.materials import CONSTANTS
 from engine.scene.murnaghan import MurnaghanParameters
 from engine.scene.tables import overlay
@@ -133,7 +133,7 @@ def _incomplete(name: Any, absent: list[str]) -> str:
     keys = ", ".join(absent)
     if name is None:
         return f"a material without 'name' must give {keys}; or name one to start from: {', '.join(CONSTANTS)}"
-    hint = suggestion(str(name), list(CONSTANTS), "materials")
+    hint = did_you_mean(str(name), list(CONSTANTS), "materials")
     return f"unknown material '{name}' (one of your own must give {keys}){hint}"
 
 

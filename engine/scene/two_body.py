@@ -32,7 +32,7 @@ class Approach:
     start: str
 
 
-def approach(position: Array, velocity: Array, total_mass: float, separation: float) -> Approach:
+def approach_state(position: Array, velocity: Array, total_mass: float, separation: float) -> Approach:
     """Relative state at `separation`, found by integrating the two-body problem backward from contact.
 
     Args:

@@ -17,6 +17,8 @@ COUNTER = """
 import signal, sys, time
 from pathlib import Path
 job = Path(sys.argv[2])
+if (job / "ready").exists():
+    sys.exit(3)
 signal.signal(signal.SIGTERM, lambda number, frame: (job / "signals").open("a").write("x"))
 (job / "ready").touch()
 while not (job / "end").exists():
@@ -49,6 +51,22 @@ def test_each_signal_reaches_an_engine_once(tmp_path: Path, monkeypatch: pytest.
         assert ended.result(timeout=20) == EngineExit(5, "last line")
     assert (job / "signals").read_text() == "x"
     assert worker.signal([job], signal.SIGTERM) == 0
+
+
+def test_an_engine_stays_known_when_a_second_one_finds_its_job_busy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "engine.py").write_text(COUNTER)
+    monkeypatch.setattr(campaigns.worker, "ENGINE", (sys.executable, str(tmp_path / "engine.py")))
+    job, worker = tmp_path / "job", Worker()
+    job.mkdir()
+    with ThreadPoolExecutor(1) as pool:
+        first = pool.submit(worker.run, job, 1, "cpu", False)
+        wait_for(job / "ready")
+        assert worker.run(job, 1, "cpu", False).code == ExitCode.BUSY
+        assert worker.signal([job], signal.SIGTERM) == 1
+        (job / "end").touch()
+        assert first.result(timeout=20) == EngineExit(5, "last line")
 
 
 def test_a_job_that_another_process_runs_is_left_to_it(tmp_path: Path) -> None:

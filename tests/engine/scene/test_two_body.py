@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from engine.scene.two_body import Approach, apocentre, approach
+from engine.scene.two_body import Approach, apocentre, approach_state
 from tests.helpers.device import Array
 
 G_N, R = 6.6743e-11, 50e3
@@ -21,7 +21,7 @@ def contact(v: float, degrees: float) -> tuple[Array, Array]:
 
 
 def pair(v: float, degrees: float, start: float = 2.0, mu: float = MU) -> Approach:
-    return approach(*contact(v, degrees), mu / G_N, start * CONTACT)
+    return approach_state(*contact(v, degrees), mu / G_N, start * CONTACT)
 
 
 def energy(x: Array, v: Array) -> float:
