@@ -22,7 +22,7 @@ CAPTION = "The largest remnant of every collision, along its shortest axis and e
 WIDE, NARROW, GAP, CAPTION_HEIGHT, LINE_HEIGHT = 2.5, 1.7, 0.1, 0.22, 0.12
 """Widths of a panel, space between panels, space for a caption, and for each of its lines [inch]."""
 
-LETTERS = 17
+LETTERS = 19
 """Letters of a caption in an inch."""
 
 KEY = (
