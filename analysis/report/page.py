@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from analysis.remnant.outcome import Outcomes
 from analysis.remnant.variables import DRIFTS
-from analysis.results.collect import Collected
+from analysis.results.collect import OF_THE_DATA_SET, Collected
 from analysis.results.tables import as_shown, reasons, shape_table, unresolved
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_text
@@ -86,7 +86,7 @@ def write_report(found: Collected, figures: Sequence[tuple[str, Path]], path: Pa
         figures=[(caption, _embedded(figure)) for caption, figure in figures],
         drifts=[_largest(results[name]) for name in DRIFTS],
         cpu_hours=float(results["cpu_time"].sum()) / 3600.0,
-        settings={name: _plain(value) for name, value in results.attrs.items()},
+        settings={name: _plain(value) for name, value in results.attrs.items() if name not in OF_THE_DATA_SET},
         sessions=_sessions(found.outcomes),
     )
     write_text(path, text)

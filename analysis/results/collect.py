@@ -24,6 +24,10 @@ ALWAYS = ("velocity", "angle", "end_time")
 """Parameters that are coordinates even when every job has the same."""
 
 
+OF_THE_DATA_SET = ("Conventions", "title", "physics_version")
+"""Attributes of results.nc that are no settings of its collisions."""
+
+
 @dataclass(frozen=True)
 class Collected:
     """What is known of a campaign.

@@ -84,6 +84,7 @@ def test_texts_of_a_study_are_no_markup(directory: Path) -> None:
 def test_settings_drifts_and_every_code_are_named_once(directory: Path) -> None:
     found = page(directory)
     assert found.row("particles") == ["particles", "200"]
+    assert "Conventions" not in found.text
     assert found.row("change of the total mass, largest of all jobs")[1] == "1e-09"
     assert found.row("code") == ["code", "abc with changes; def"]
     assert found.row("threads") == ["threads", "1; 2"]
