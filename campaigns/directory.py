@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from campaigns.campaign import FILE, Campaign, Job, read_campaign
 from campaigns.dotted_keys import flatten
 from campaigns.expansion import scene_of
-from campaigns.job_names import HASH_LENGTH
+from campaigns.job_names import hash_in
 from engine.errors import SceneError
 from engine.job.storage import write_json, write_text
 
@@ -55,12 +55,12 @@ class CampaignDirectory:
         Raises:
             SceneError: the directory belongs to another study, other settings or another physics version.
         """
-        names = {name[-HASH_LENGTH:]: name for name in self._job_names()}
+        names = {hash_in(name): name for name in self._job_names()}
         if self.file.is_file():
             self._require_same(self.read(), campaign)
-        elif self.path.exists() and not any(job.id[-HASH_LENGTH:] in names for job in campaign.jobs):
+        elif self.path.exists() and not any(hash_in(job.id) in names for job in campaign.jobs):
             self._require_empty()  # jobs of this campaign are its own, also when its description is lost
-        jobs = tuple(job.called(names.get(job.id[-HASH_LENGTH:], job.id)) for job in campaign.jobs)
+        jobs = tuple(job.called(names.get(hash_in(job.id), job.id)) for job in campaign.jobs)
         return campaign.model_copy(update={"jobs": jobs})
 
     def write(self, campaign: Campaign) -> None:
@@ -125,13 +125,12 @@ def _first(lines: list[str]) -> list[str]:
 
 
 def _hashes(campaign: Campaign) -> set[str]:
-    return {job.id[-HASH_LENGTH:] for job in campaign.jobs}
+    return {hash_in(job.id) for job in campaign.jobs}
 
 
 def _materials(campaign: Campaign) -> set[str]:
     """Names of the materials of all bodies of a campaign."""
-    bodies = [body for job in campaign.jobs for body in (job.collision.target, job.collision.projectile)]
-    return {body.material for body in bodies if body.material}
+    return {name for job in campaign.jobs for name in job.collision.material_names}
 
 
 def _reaches_scenes(key: str, materials: set[str]) -> bool:

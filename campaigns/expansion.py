@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from campaigns.campaign import Campaign, Job
 from campaigns.dotted_keys import flatten, ordered, rest_of, scalar_keys, value_at, with_names_of
-from campaigns.job_names import alias, job_id
+from campaigns.job_names import alias, hash_in, job_id
 from campaigns.study import Study
 from engine import PHYSICS_VERSION
 from engine.errors import SceneError
@@ -171,20 +171,16 @@ def _require_values(key: str, values: Any, source: str) -> None:
 def _refuse_equal_jobs(jobs: list[Job], source: str) -> None:
     for first, second in _equal_pairs(jobs):
         given = " and ".join(", ".join(f"{key} {value}" for key, value in job.index.items()) for job in (first, second))
-        same = _scene_hash(first) == _scene_hash(second)
+        same = hash_in(first.id) == hash_in(second.id)
         fault = "are the same simulation; keep one of them" if same else "coincide; give cases different names"
         raise SceneError(f"{source}: {given} {fault}")
-
-
-def _scene_hash(job: Job) -> str:
-    return job.id.rpartition("-")[2]
 
 
 def _equal_pairs(jobs: list[Job]) -> Iterator[tuple[Job, Job]]:
     """Jobs of the same scene, or of the same coordinates in the results."""
     seen: dict[Any, Job] = {}
     for job in jobs:
-        for mark in (_scene_hash(job), tuple(job.index.items())):
+        for mark in (hash_in(job.id), tuple(job.index.items())):
             if mark in seen:
                 yield seen[mark], job
             seen[mark] = job

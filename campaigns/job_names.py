@@ -24,9 +24,14 @@ def job_id(name: str, scene_hash: str) -> str:
     return f"{name[:LONGEST].rstrip('._-')}-{scene_hash[:HASH_LENGTH]}"
 
 
+def hash_in(name: str) -> str:
+    """Return the start of the hash of its scene, with which the id of a job ends."""
+    return name[-HASH_LENGTH:]
+
+
 def belongs_to(name: str, scene: bytes) -> bool:
     """Whether the content of scene.json is the scene whose hash ends the job id."""
-    return hashlib.sha256(scene).hexdigest()[:HASH_LENGTH] == name[-HASH_LENGTH:]
+    return hashlib.sha256(scene).hexdigest()[:HASH_LENGTH] == hash_in(name)
 
 
 def _part(key: str, value: Any) -> str:

@@ -23,7 +23,6 @@ Column = NDArray[np.float64] | NDArray[np.object_]
 ALWAYS = ("velocity", "angle", "end_time")
 """Parameters that are coordinates even when every job has the same."""
 
-
 OF_THE_DATA_SET = ("Conventions", "title", "physics_version")
 """Attributes of results.nc that are no settings of its collisions."""
 

@@ -123,13 +123,13 @@ class Stencil:
             self.nodes[n] = self.nodes[n] + value
 
     @ti.func
-    def gather(self, n, f):
+    def gather(self, n, f, w):
         """Return sum w v [m/s], sum w m [kg] and sum w v r^T/(m2 dx) [1/s]: mean velocity, mass, and velocity gradient.
 
         Args:
             n, f: lowest node of the particle, and distance from it in cells.
+            w: weights of its nodes.
         """
-        w = spline_weights(f)
         w_z, d_z = w[2, :], first_moments(w[2, :], f[2])
         d_x, d_y = first_moments(w[0, :], f[0]), first_moments(w[1, :], f[1])
         mean, by_x, by_y, by_z = vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0)
@@ -152,15 +152,16 @@ class Stencil:
         return vec3(mean[0], mean[1], mean[2]), mean[3], L
 
     @ti.func
-    def is_ballistic(self, p, n, f, mean_mass):
+    def is_ballistic(self, p, n, w, mean_mass):
         """Return whether particle p shares no node with another.
 
         Args:
             p: index of the particle.
-            n, f: its lowest node, and its distance from it in cells.
+            n: its lowest node.
+            w: weights of its nodes.
             mean_mass: mean mass of its nodes [kg].
         """
-        mass, w, result = self.particles.mass[p], spline_weights(f), False
+        mass, result = self.particles.mass[p], False
         # what others have on average costs nothing to know, and settles it for almost all particles
         if mean_mass - mass * sum_of_squares(w) <= SURELY_SHARED * mass:
             result = self.shared_mass(mass, w, n) <= ROUND_OFF_MASS * mass

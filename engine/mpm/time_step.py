@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import taichi as ti
-from numpy.typing import NDArray
 
+from engine.arrays import Scalars
 from engine.device.backend import Real
 from engine.device.tensors import norm_squared, unpack
 from engine.mpm.spline import SECOND_MOMENT
@@ -63,35 +63,38 @@ def free_stress_gradient2(tau, rho0, dx):
     return LARGEST_INCREMENT * (ti.sqrt(norm_squared(unpack(tau))) / (SECOND_MOMENT * rho0 * dx * dx))
 
 
-def first_rate(scene: Scene, state: Arrays) -> float:
+def first_rate(scene: Scene, state: Arrays, rho0: Scalars) -> float:
     """Return the inverse time step [1/s] that a scene begins with.
 
     Args:
         scene: whose bodies are at rest density and move at full speed.
-        state: fields C, tau and body of every particle.
+        state: fields C and tau of every particle.
+        rho0: reference density of every particle [kg/m^3], shape [particle_count].
     """
     speeds = [_fastest(body, material) for body, material in zip(scene.bodies, scene.materials, strict=True)]
-    return max(max(speeds) / (scene.numerics.cfl * scene.dx), _rate_of_state(scene, state))
+    return max(max(speeds) / (scene.numerics.cfl * scene.dx), _rate_of_state(state, rho0, scene.dx))
 
 
-def rate_of_motion(state: Arrays, dx: float) -> NDArray[np.float64]:
+def rate_of_motion(state: Arrays, dx: float) -> Scalars:
     """Return the inverse time step [1/s] that the motion of each particle demands, shape [particle_count].
 
     Args:
         state: fields v and C of every particle.
         dx: grid spacing [m].
     """
-    strain = np.linalg.norm(state["C"], axis=(1, 2)) / LARGEST_INCREMENT
-    return np.asarray(np.maximum(np.linalg.norm(state["v"], axis=1) / dx, strain))
+    return np.asarray(np.maximum(np.linalg.norm(state["v"], axis=1) / dx, _rate_of_deformation(state)))
 
 
-def _rate_of_state(scene: Scene, state: Arrays) -> float:
+def _rate_of_state(state: Arrays, rho0: Scalars, dx: float) -> float:
     """Inverse time step [1/s] that motion and stress inside particles demand."""
-    rho0 = np.array([body.material.rho0 for body in scene.bodies])[state["body"]]
     stress = np.sqrt(np.sum(state["tau"] ** 2 * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0], axis=1))
-    growth = float((stress / rho0).max()) / (SECOND_MOMENT * scene.dx**2)
-    strain = float(np.linalg.norm(state["C"], axis=(1, 2)).max())
-    return max(strain / LARGEST_INCREMENT, math.sqrt(growth / LARGEST_INCREMENT))
+    growth = float((stress / rho0).max()) / (SECOND_MOMENT * dx**2)
+    return max(float(_rate_of_deformation(state).max()), math.sqrt(growth / LARGEST_INCREMENT))
+
+
+def _rate_of_deformation(state: Arrays) -> Scalars:
+    """Inverse time step [1/s] that the velocity gradient of each particle demands, shape [particle_count]."""
+    return np.asarray(np.linalg.norm(state["C"], axis=(1, 2)) / LARGEST_INCREMENT)
 
 
 def _fastest(body: Body, material: Material) -> float:

@@ -9,6 +9,7 @@ import taichi as ti
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import TASK, Real, vec3, vec4
 from engine.mpm.interfaces import Boundary, Scheme
+from engine.mpm.spline import spline_weights
 from engine.mpm.stencil import COPY, TILE, Stencil, corner_coordinates, in_copy, node_in_tile
 from engine.mpm.time_step import Limits, rate_of, tightest
 from engine.state.clock import Clock
@@ -113,9 +114,10 @@ class Transfer:
     def gather(self, p, b):
         """Advance particle p with the velocity of its nodes in block b; returns its limits of the next time step."""
         n, f = self.stencil.locate(p, b)
-        v, mass, L = self.stencil.gather(n, f)
+        w = spline_weights(f)
+        v, mass, L = self.stencil.gather(n, f, w)
         limits = Limits(0.0, 0.0, 0.0, 0.0)
-        if self.stencil.is_ballistic(p, n, f, mass):
+        if self.stencil.is_ballistic(p, n, w, mass):
             limits = self.scheme.advance_ballistic(p, self.dx())
         else:
             limits = self.scheme.advance(p, v, L, self.dx())

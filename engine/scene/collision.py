@@ -94,9 +94,8 @@ class Collision(Frozen):
     @model_validator(mode="after")
     def _materials_are_known(self) -> Self:
         known = list(self.materials | CONSTANTS)
-        for body in ("target", "projectile"):
-            name = getattr(self, body).material
-            if name is not None and name not in self.materials:
+        for body, name in zip(("target", "projectile"), self.material_names, strict=True):
+            if name not in self.materials:
                 hint = did_you_mean(name, known, "materials")
                 own = f'a material of your own needs a table, as materials.{name} = {{name = "basalt"}}'
                 raise ValueError(f"'{body}.material': unknown material '{name}'{hint}; {own}")
@@ -129,19 +128,24 @@ class Collision(Frozen):
         radius, count = self.target.radius, self.particles
         small = radius if self.projectile.radius is None else self.projectile.radius
         fewer = max(1, round(count * (small / radius) ** 3))
-        return self._body("target", radius, count), self._body("projectile", small, fewer)
+        first, second = self.material_names
+        return self._body("target", first, radius, count), self._body("projectile", second, small, fewer)
 
-    def _body(self, name: str, radius: float, particles: int) -> Sphere:
+    @property
+    def material_names(self) -> tuple[str, str]:
+        """Names of the materials of target and projectile."""
+        return self.target.material, self.projectile.material or self.target.material
+
+    def _body(self, name: str, chosen: str, radius: float, particles: int) -> Sphere:
         given: Target | Projectile = getattr(self, name)
-        material = self._complete(given.material or self.target.material)
+        material = self._complete(chosen)
         _require_slow_spin(name, given.spin_period, radius, material)
         return Sphere(
             name=name, radius=radius, particles=particles, material=material, damage=given.damage, spin=given.spin
         )
 
     def _require_one_form(self) -> None:
-        first = self.target.material
-        second = self.projectile.material or first
+        first, second = self.material_names
         forms = [self.materials[name].eos.form for name in (first, second)]
         if forms[0] != forms[1]:
             raise SceneError(

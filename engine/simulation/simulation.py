@@ -95,7 +95,7 @@ class Simulation:
         """
         self.particles.write({**initial_state(self.scene), **changes})
         self.rebuild_blocks()
-        self.clock.rate[None] = first_rate(self.scene, self.particles.read("C", "tau", "body"))
+        self.clock.rate[None] = self._first_rate(self.particles.read("C", "tau", "body"))
 
     def advance(self, until: float, steps: int = LAUNCHES) -> None:
         """Advance by some steps, at most to the first that reaches a time.
@@ -187,7 +187,10 @@ class Simulation:
     @property
     def first_dt(self) -> float:
         """The time step [s] that the scene begins with."""
-        return float(1.0 / max(first_rate(self.scene, initial_state(self.scene)), self.clock.least_rate[None]))
+        return float(1.0 / max(self._first_rate(initial_state(self.scene)), self.clock.least_rate[None]))
+
+    def _first_rate(self, state: Arrays) -> float:
+        return first_rate(self.scene, state, self.rho0(state))
 
     def _check_fault(self) -> None:
         if self.clock.fault[None] != FAULT_NONE:

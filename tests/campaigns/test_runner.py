@@ -96,20 +96,19 @@ def test_a_new_material_keeps_finished_jobs(further, command, write_study, runs)
     assert command("plan", fewer).code == 0, "constants of ice are no settings of a study without it"
 
 
-def test_a_new_spin_keeps_finished_jobs(command, write_study, runs):
+@pytest.mark.parametrize(
+    ("further", "jobs"),
+    [
+        ("target.spin_period = [8, 4]\ntarget.spin_obliquity = [0, 90]", 8),
+        ("[[cases]]\nname = 'still'\n[[cases]]\nname = 'turning'\ntarget.spin_period = 8", 4),
+    ],
+    ids=["axes", "cases"],
+)
+def test_a_setting_that_is_varied_later_keeps_finished_jobs(command, write_study, runs, further, jobs):
     command("run", write_study(collision="target.spin_period = 8"))
-    axes = "[5]\ntarget.spin_period = [8, 4]\ntarget.spin_obliquity = [0, 90]"
-    assert command("run", write_study(angle=axes)).code == 0
+    assert command("run", write_study(angle=f"[5]\n{further}")).code == 0
     assert starts(runs, "v0100_a05") == ["from step 0"]
-    assert len(list(runs.glob("small/jobs/*"))) == 8
-
-
-def test_a_setting_that_becomes_one_of_several_cases_keeps_finished_jobs(command, write_study, runs):
-    command("run", write_study(collision="target.spin_period = 8"))
-    cases = "[5]\n[[cases]]\nname = 'still'\n[[cases]]\nname = 'turning'\ntarget.spin_period = 8"
-    assert command("run", write_study(angle=cases)).code == 0
-    assert starts(runs, "v0100_a05") == ["from step 0"]
-    assert len(list(runs.glob("small/jobs/*"))) == 4
+    assert len(list(runs.glob("small/jobs/*"))) == jobs
 
 
 def test_a_constant_of_a_material_in_use_is_not_changed_in_a_campaign(command, write_study):

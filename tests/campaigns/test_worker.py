@@ -34,15 +34,21 @@ def wait_for(path: Path) -> None:
         time.sleep(0.01)
 
 
-def test_each_signal_reaches_an_engine_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A job directory whose engine counts the signals that it receives."""
     (tmp_path / "engine.py").write_text(COUNTER)
     monkeypatch.setattr(campaigns.worker, "ENGINE", (sys.executable, str(tmp_path / "engine.py")))
-    job, worker = tmp_path / "job", Worker()
-    job.mkdir()
+    (tmp_path / "job").mkdir()
+    return tmp_path / "job"
+
+
+def test_each_signal_reaches_an_engine_once(job: Path) -> None:
+    worker = Worker()
     with ThreadPoolExecutor(1) as pool:
         ended = pool.submit(worker.run, job, 1, "cpu", False)
         wait_for(job / "ready")
-        assert worker.signal([tmp_path / "another"], signal.SIGTERM) == 0
+        assert worker.signal([job.parent / "another"], signal.SIGTERM) == 0
         assert worker.signal([job], signal.SIGTERM) == 1
         wait_for(job / "signals")
         assert worker.signal([job], signal.SIGTERM) == 1
@@ -53,13 +59,8 @@ def test_each_signal_reaches_an_engine_once(tmp_path: Path, monkeypatch: pytest.
     assert worker.signal([job], signal.SIGTERM) == 0
 
 
-def test_an_engine_stays_known_when_a_second_one_finds_its_job_busy(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "engine.py").write_text(COUNTER)
-    monkeypatch.setattr(campaigns.worker, "ENGINE", (sys.executable, str(tmp_path / "engine.py")))
-    job, worker = tmp_path / "job", Worker()
-    job.mkdir()
+def test_an_engine_stays_known_when_a_second_one_finds_its_job_busy(job: Path) -> None:
+    worker = Worker()
     with ThreadPoolExecutor(1) as pool:
         first = pool.submit(worker.run, job, 1, "cpu", False)
         wait_for(job / "ready")

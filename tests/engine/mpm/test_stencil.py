@@ -5,6 +5,7 @@ import pytest
 import taichi as ti
 
 from engine.device.backend import vec4
+from engine.mpm.spline import spline_weights
 from engine.mpm.stencil import COPY, MARGIN, TILE, Stencil
 from engine.simulation.simulation import Simulation
 from tests.helpers.device import Array, worst
@@ -46,7 +47,7 @@ class Probe:
     def gather(self):
         for p in self.within:
             n, f = self.stencil.locate(p, self.stencil.owner[p])
-            self.mean[p], _, self.gradient[p] = self.stencil.gather(n, f)
+            self.mean[p], _, self.gradient[p] = self.stencil.gather(n, f, spline_weights(f))
 
 
 def test_gathering_a_linear_field_gives_its_value_and_its_slope_at_the_particle():
