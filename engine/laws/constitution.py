@@ -5,8 +5,8 @@ Every particle stores j = det F - 1 and the Kirchhoff stress tau = J sigma; laws
 
 import taichi as ti
 
-from engine.device.tensors import determinant_increment, identity, pack, symmetric, unpack
-from engine.laws.interfaces import DamageLaw, EnergyLaw, EquationOfStateLaw, ShearLaw, ViscosityLaw
+from engine.device.tensors import determinant_increment, deviator, identity, pack, symmetric, unpack
+from engine.laws.interfaces import DamageLaw, DissipationLaw, EnergyLaw, EquationOfStateLaw, ShearLaw, ViscosityLaw
 from engine.state.particles import Particles
 
 
@@ -30,6 +30,7 @@ class Constitution:
         particles: state of the particles.
         eos: equation of state, which also has the reference density.
         energy: internal energy.
+        dissipation: account of what becomes heat.
         shear: shear stress, with its strength.
         damage: damage, with its growth.
         viscosity: viscous stress.
@@ -40,11 +41,12 @@ class Constitution:
         particles: Particles,
         eos: EquationOfStateLaw,
         energy: EnergyLaw,
+        dissipation: DissipationLaw,
         shear: ShearLaw,
         damage: DamageLaw,
         viscosity: ViscosityLaw,
     ) -> None:
-        self.particles, self.eos, self.energy = particles, eos, energy
+        self.particles, self.eos, self.energy, self.dissipation = particles, eos, energy, dissipation
         self.shear, self.damage, self.viscosity = shear, damage, viscosity
 
     @ti.func
@@ -66,7 +68,8 @@ class Constitution:
         rho0, H = self.eos.rho0(body), dt * L
         growth, strain = determinant_increment(H), strain_increment(H)
         j = self.particles.j[p] + (1.0 + self.particles.j[p]) * growth
-        half_work = 0.5 / rho0 * ddot(unpack(self.particles.tau[p]), strain)
+        before = unpack(self.particles.tau[p])
+        half_work = 0.5 / rho0 * ddot(before, strain)
         E, D = self.energy.after(p, 2.0 * half_work), self.damage.value(p)
         J = 1.0 + j
         P, c2 = self.eos.evaluate(p, -j / J, E, body)
@@ -78,8 +81,32 @@ class Constitution:
         self.particles.j[p], self.particles.tau[p] = j, pack(tau)
         # trapezoidal rule: the work of the mean stress, so that elastic energy does not drift
         self.energy.add(p, half_work + 0.5 / rho0 * ddot(tau, strain))
+        self.dissipate(p, before, tau, J * stress, strain)
         self.damage.grow(p, s / J, P, dt, body)
         return self.wave_speed(c2, body), diffusivity
+
+    @ti.func
+    def dissipate(self, p, before, after, viscous, strain):
+        """Account for the work of shear stress that elastic strain does not store, and for that of viscous stress.
+
+        Args:
+            p: index of the particle.
+            before, after: Kirchhoff stress before and after the step [Pa].
+            viscous: viscous part of that after it [Pa].
+            strain: logarithmic strain of the step [-].
+        """
+        body = self.particles.body[p]
+        s0, s = deviator(before), deviator(after)
+        stored = self.shear.elastic_energy(s, body) - self.shear.elastic_energy(s0, body)
+        work = ddot(0.5 * (s0 + s) - deviator(viscous), strain)
+        rho0 = self.eos.rho0(body)
+        self.dissipation.stress(p, (work - stored) / rho0, ddot(viscous, strain) / rho0)
+
+    @ti.func
+    def lose_to_transfer(self, p, heat):
+        """Give particle p the energy [J/kg] that the transfer takes from its motion."""
+        self.energy.heat(p, heat)
+        self.dissipation.transfer(p, heat)
 
     @ti.func
     def rho0(self, p):

@@ -12,10 +12,11 @@ class InternalEnergy:
 
     Args:
         particles: state of the particles.
+        takes_heat: whether it takes up what the transfer dissipates.
     """
 
-    def __init__(self, particles: Particles) -> None:
-        self.E = particles.require("E")
+    def __init__(self, particles: Particles, takes_heat: bool = True) -> None:
+        self.E, self.takes_heat = particles.require("E"), takes_heat
 
     @ti.func
     def after(self, p, work):
@@ -26,6 +27,12 @@ class InternalEnergy:
     def add(self, p, work):
         """Add work to E[p]."""
         self.E[p] = self.E[p] + work  # += would be atomic
+
+    @ti.func
+    def heat(self, p, heat):
+        """Add what the transfer dissipates to E[p]."""
+        if ti.static(self.takes_heat):
+            self.add(p, heat)
 
 
 @ti.data_oriented
@@ -39,4 +46,8 @@ class NoInternalEnergy:
 
     @ti.func
     def add(self, p, work):
+        """Do nothing."""
+
+    @ti.func
+    def heat(self, p, heat):
         """Do nothing."""

@@ -35,6 +35,19 @@ class EnergyLaw(Protocol):
     def add(self, p, work):
         """Add work [J/kg] to E of particle p; called last in the step, with the work of the mean stress."""
 
+    def heat(self, p, heat):
+        """Add what the transfer dissipates [J/kg] to E of particle p, if it is to take it up."""
+
+
+class DissipationLaw(Protocol):
+    """Specific energy [J/kg] that motion has lost, by cause (engine/physics.md, section 2)."""
+
+    def transfer(self, p, heat):
+        """Add what the transfer took from the motion of particle p [J/kg]."""
+
+    def stress(self, p, plastic, viscous):
+        """Add what plastic and viscous flow took from the motion of particle p [J/kg]; called last in the step."""
+
 
 class DamageLaw(Protocol):
     """Damage D [-] (engine/physics.md, section 5)."""
@@ -89,6 +102,9 @@ class ShearLaw(Protocol):
 
     def modulus(self, body):
         """Return the shear modulus [Pa]; zero where there is no shear stress."""
+
+    def elastic_energy(self, s, body):
+        """Return the energy [J/m^3] that a deviatoric Kirchhoff stress s [Pa] stores in a reference volume."""
 
 
 class StrengthLaw(Protocol):

@@ -92,6 +92,11 @@ class Hencky:
         """Return the material's shear modulus [Pa]."""
         return self.table[body].modulus
 
+    @ti.func
+    def elastic_energy(self, s, body):
+        """Return s:s / 4G [J/m^3]."""
+        return norm_squared(s) / (4.0 * self.modulus(body))
+
 
 @ti.data_oriented
 class Fluid:
@@ -104,5 +109,10 @@ class Fluid:
 
     @ti.func
     def modulus(self, body):
+        """Return zero."""
+        return ti.cast(0.0, Real)
+
+    @ti.func
+    def elastic_energy(self, s, body):
         """Return zero."""
         return ti.cast(0.0, Real)

@@ -1,25 +1,29 @@
-"""Contracts of the grid: a transfer scheme, and what bounds space."""
+"""Contracts of the grid: a transfer scheme, its exchanges with the grid, and what bounds space."""
 
+from collections.abc import Callable
 from typing import Protocol
 
 
-class Scheme(Protocol):
-    """What a particle gives to the nodes of the grid and what it takes from them (engine/physics.md, section 1).
+class Boundary(Protocol):
+    """What bounds space, acting on nodes and on ballistic particles (engine/physics.md, section 11)."""
 
-    Device functions but for `inertia`. Nodes keep one velocity, that after the grid update.
+    def apply(self, x, velocity):
+        """Return the velocity [m/s] that is left at x [m] of a velocity there."""
+
+
+class Exchange(Protocol):
+    """What a particle gives to its nodes and takes from them in one pass over the grid; device functions.
+
+    Attributes:
+        name: of the pass.
+        nodes: what acts on the mean of what was given to a node.
     """
 
-    def inertia(self, dx: float) -> float:
-        """Return the moment of inertia per mass [m^2] of the affine motion of a particle; zero where it has none.
+    name: str
+    nodes: Boundary
 
-        Called on the host, for the conserved quantities.
-
-        Args:
-            dx: grid spacing [m].
-        """
-
-    def momentum(self, p, dx):
-        """Return mass [kg], momentum [kg m/s] and affine momentum [kg m/s], shape [3, 3]; called once a step, in p2g.
+    def give(self, p, dx):
+        """Return mass [kg], momentum [kg m/s] and affine momentum [kg m/s], shape [3, 3]; called once a pass.
 
         The node at distance r, in cells, and of weight w receives w (momentum + affine r) and w mass.
 
@@ -28,24 +32,42 @@ class Scheme(Protocol):
             dx: grid spacing [m].
         """
 
-    def advance(self, p, v, L, dx):
-        """Move and deform particle p over the step; called once a step, in g2p.
+    def take(self, p, v, L, dx):
+        """Change particle p by what its nodes have received; called once a pass.
 
-        Returns the `Limits` of the next time step (engine/mpm/time_step.py).
+        Returns the `Limits` of the next time step (engine/mpm/time_step.py); zeros where the pass sets none.
 
         Args:
             p: index of the particle.
-            v: mean velocity of its nodes [m/s].
-            L: velocity gradient at the particle [1/s].
+            v: mean over its nodes [m/s].
+            L: gradient at the particle [1/s].
             dx: grid spacing [m].
         """
 
-    def advance_ballistic(self, p, dx):
-        """Move particle p, which shares no node with another, and return its `Limits`; arguments as `advance`."""
+    def take_alone(self, p, dx):
+        """Change particle p, which shares no node with another; arguments and result as `take`."""
 
 
-class Boundary(Protocol):
-    """What bounds space, acting on nodes and on ballistic particles (engine/physics.md, section 11)."""
+class Stage(Protocol):
+    """A part of a time step for all particles."""
 
-    def apply(self, x, velocity):
-        """Return the velocity [m/s] that is left at x [m] of a velocity there."""
+    def run(self) -> None:
+        """Do it, unless the clock has paused."""
+
+
+class Scheme(Protocol):
+    """A transfer between particles and grid (engine/physics.md, section 1)."""
+
+    def stages(self, over_grid: Callable[[Exchange], Stage]) -> tuple[Stage, ...]:
+        """Return the parts of a time step, in order.
+
+        Args:
+            over_grid: makes an exchange a pass over the grid.
+        """
+
+    def inertia(self, dx: float) -> float:
+        """Return the moment of inertia per mass [m^2] of the affine motion of a particle; zero where it has none.
+
+        Args:
+            dx: grid spacing [m].
+        """

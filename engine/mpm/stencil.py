@@ -86,7 +86,10 @@ class Stencil:
     def locate(self, p, b):
         """Return the index of the lowest node of particle p in the copy of block b, and its distance in cells."""
         base = self.lowest_node(p)
-        local = base - BLOCK_EDGE * self.origin[b] + MARGIN
+        first = BLOCK_EDGE * self.origin[b] - MARGIN
+        # a particle faster than any time step allows stays within the copy: its weights still sum to one
+        local = ti.min(ti.max(base - first, 0), SPAN - WIDTH)
+        base = first + local
         f = ti.cast(self.particles.x[p] / self.dx[None] - ti.cast(base, ti.f64), Real)
         return b * COPY + in_copy(local), f
 
@@ -188,11 +191,19 @@ class Stencil:
                 first = BLOCK_EDGE * (self.origin[b] + corner_coordinates(corner)) - MARGIN
         return self.dx[None] * ti.cast(first + node_in_tile(n), ti.f64)
 
-    @ti.func
-    def within_margin(self, p):
-        """Return whether the copy of the block of particle p still contains all its nodes."""
-        local = self.lowest_node(p) - BLOCK_EDGE * self.particles.origin[p] + MARGIN
-        return local.min() >= 0 and local.max() <= SPAN - WIDTH
+
+@ti.func
+def within_margin(x, block):
+    """Return whether the copy of a block contains all nodes of a particle, also half a cell further on.
+
+    Within a step a particle moves by at most half a cell before blocks can be built anew.
+
+    Args:
+        x: position of the particle in cells.
+        block: coordinates of the block.
+    """
+    local = x - ti.cast(BLOCK_EDGE * block - MARGIN, ti.f64)
+    return local.min() >= 1.0 and local.max() < SPAN - WIDTH + 1.0
 
 
 @ti.func

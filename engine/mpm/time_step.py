@@ -25,6 +25,12 @@ the velocity gradient [1/s^2] and of the acceleration [m^2/s^4], and the diffusi
 
 
 @ti.func
+def no_limits():
+    """Return limits that any time step satisfies."""
+    return Limits(0.0, 0.0, 0.0, 0.0)
+
+
+@ti.func
 def tightest(a, b):
     """Return the limits that satisfy both."""
     return Limits(

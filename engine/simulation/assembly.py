@@ -10,6 +10,7 @@ from engine.gravity.uniform import NoGravity, UniformGravity
 from engine.laws.algebraic import Algebraic
 from engine.laws.constitution import Constitution
 from engine.laws.damage import Damage, Intact
+from engine.laws.dissipation import Dissipation, NoDissipation
 from engine.laws.energy import InternalEnergy, NoInternalEnergy
 from engine.laws.fracture import Fracture, Unbreakable
 from engine.laws.interfaces import DamageLaw, EquationOfStateLaw, ShearLaw
@@ -18,12 +19,13 @@ from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
 from engine.mpm.apic import Apic
+from engine.mpm.filtered import Filtered
 from engine.mpm.interfaces import Boundary, Scheme
+from engine.mpm.response import Response
 from engine.mpm.walls import NoWalls, Walls
 from engine.scene.scene import Scene
 from engine.scene.tillotson import TillotsonParameters
 from engine.simulation.initial_conditions import all_flaws
-from engine.state.clock import Clock
 from engine.state.particles import Particles
 
 
@@ -38,7 +40,8 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
     return Constitution(
         particles,
         _equation_of_state(scene),
-        InternalEnergy(particles) if physics.energy else NoInternalEnergy(),
+        InternalEnergy(particles, scene.numerics.transfer_heat) if physics.energy else NoInternalEnergy(),
+        Dissipation(particles) if physics.energy else NoDissipation(),
         _shear(scene, particles),
         _damage(scene, particles),
         Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
@@ -64,11 +67,17 @@ def walls(scene: Scene) -> Boundary:
     return Walls(scene.physics.walls) if scene.physics.walls else NoWalls()
 
 
-def scheme(
-    particles: Particles, constitution: Constitution, gravity: GravityField, walls: Boundary, clock: Clock
-) -> Scheme:
-    """Return what particles give to the grid and take from it."""
-    return Apic(particles, constitution, gravity, walls, clock)
+def scheme(scene: Scene, response: Response) -> Scheme:
+    """Return what particles exchange with the grid.
+
+    Args:
+        scene: its numerics, materials and walls.
+        response: of one particle.
+    """
+    if scene.numerics.transfer == "apic":
+        return Apic(response)
+    speed = max(material.longitudinal_speed for material in scene.materials)
+    return Filtered(response, speed / (scene.numerics.filter_time * scene.dx), walled=bool(scene.physics.walls))
 
 
 def _equation_of_state(scene: Scene) -> EquationOfStateLaw:

@@ -13,6 +13,7 @@ from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity.self_gravity import SelfGravity
 from engine.mpm.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
+from engine.mpm.response import Response
 from engine.mpm.stencil import Stencil
 from engine.mpm.time_step import first_rate
 from engine.mpm.transfer import Transfer
@@ -68,7 +69,8 @@ class Simulation:
         self.gravity = assembly.gravity(scene, self.particles)
         self.constitution = assembly.constitution(scene, self.particles)
         self.walls = assembly.walls(scene)
-        self.scheme = assembly.scheme(self.particles, self.constitution, self.gravity, self.walls, self.clock)
+        self.response = Response(self.particles, self.constitution, self.gravity, self.walls, self.clock, scene.dx)
+        self.scheme = assembly.scheme(scene, self.response)
         self._make_room(scene.particles // 8)
         self.events = Events(gravity_due=scene.start_time if physics.gravity else math.inf)
 
@@ -110,7 +112,7 @@ class Simulation:
             GuardFault: a particle is outside the range in which the equations are valid.
         """
         self._handle_events()
-        self.clock.pause_time[None] = min(until, self.events.gravity_due)
+        self.clock.pause_time[None] = min(until, self.events.gravity_due, self.scene.end_time)
         self._launch(steps)
         self._check_fault()
 
@@ -156,7 +158,7 @@ class Simulation:
 
     def _make_room(self, blocks: int) -> None:
         self.stencil = Stencil(self.particles, self.scene.dx, blocks)
-        self.transfer = Transfer(self.stencil, self.scheme, self.walls, self.clock, self.scene.numerics.cfl)
+        self.transfer = Transfer(self.stencil, self.scheme, self.clock, self.scene.numerics.cfl)
 
     def _handle_events(self) -> None:
         if self.clock.moved_out[None]:
@@ -175,7 +177,7 @@ class Simulation:
         self.events = Events(self.time + interval, change, removed.force, removed.torque)
 
     def _launch(self, most: int) -> None:
-        left = min(self.clock.pause_time[None], self.scene.end_time) - self.time
+        left = self.clock.pause_time[None] - self.time
         for _ in range(min(most, math.ceil(left / self.next_dt) + 1)):
             self.transfer.step()
 

@@ -24,6 +24,9 @@ FIELD_TYPES = {
     "origin": ti.types.vector(3, ti.i32),
     "b_minus_I": vec6,
     "E": Real,
+    "transfer_heat": Real,
+    "plastic_heat": Real,
+    "viscous_heat": Real,
     "damage_root": Real,
     "acceleration": vec3,
 }
@@ -55,6 +58,7 @@ class Particles:
         origin: coordinates of the grid block that owned the particle when blocks were last built.
         b_minus_I: b - I [-], six components, with the isochoric left Cauchy-Green tensor b of the elastic strain.
         E: specific internal energy [J/kg].
+        transfer_heat, plastic_heat, viscous_heat: specific energy that motion has lost since the start [J/kg].
         damage_root: cube root of the damage [-].
         acceleration: by self-gravity [m/s^2].
         index: number in the scene of the particle at each index of the device.

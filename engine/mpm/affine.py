@@ -1,0 +1,29 @@
+"""Affine velocity of a particle that moves freely (engine/physics.md, section 1)."""
+
+import taichi as ti
+
+from engine.device.tensors import determinant_increment, identity, norm_squared, symmetric
+
+
+@ti.func
+def affine_velocity(C, dt, j):
+    """Return the affine velocity [1/s] of matter that has moved freely for dt: sym(C (I + dt C)^-1) + skew(C).
+
+    The symmetric part is that of every linear flow; the skew part keeps angular momentum. In dilated matter, J > 1, the
+    symmetric part is scaled so that |sym C| max(J, 1)^(1/3) never grows: no stress opposes what a particle of debris
+    thinner than a cell remembers of itself.
+
+    Args:
+        C: affine velocity [1/s].
+        dt: time of the motion [s].
+        j: det F - 1 before the motion [-].
+    """
+    before, after = symmetric(C), symmetric(C @ (identity() + dt * C).inverse())
+    J = 1.0 + j
+    dilated = J * (1.0 + determinant_increment(dt * C))
+    square, dilation = norm_squared(before), dilated / ti.max(J, 1.0)
+    if dilated > 1.0 and square > 0.0:
+        growth = norm_squared(after) / square
+        if growth**3 * dilation**2 > 1.0:
+            after *= dilation ** (-1.0 / 3.0) / ti.sqrt(growth)
+    return after + 0.5 * (C - C.transpose())

@@ -1,0 +1,141 @@
+"""One pass over the grid: particles give to their nodes, nodes sum, particles take (engine/physics.md, section 1).
+
+One loop over the tiles sums the copies of every node in a fixed order and writes the mean back into each. On the CPU
+one thread works on one block at a time.
+"""
+
+import taichi as ti
+
+from engine.constants import BLOCK_EDGE
+from engine.device.backend import TASK, Real, vec3, vec4
+from engine.mpm.interfaces import Exchange
+from engine.mpm.spline import spline_weights
+from engine.mpm.stencil import COPY, TILE, Stencil, corner_coordinates, in_copy, node_in_tile
+from engine.mpm.time_step import no_limits, rate_of, tightest
+from engine.state.clock import Clock
+
+
+@ti.data_oriented
+class GridPass:
+    """An exchange of all particles with the grid.
+
+    Args:
+        stencil: nodes of the particles.
+        exchange: what a particle gives and takes.
+        clock: whether the step runs, and how long the next one may be.
+        cfl: Courant number: time step in units of the time a wave needs for one cell.
+    """
+
+    def __init__(self, stencil: Stencil, exchange: Exchange, clock: Clock, cfl: float) -> None:
+        self.stencil, self.exchange, self.clock = stencil, exchange, clock
+        self.cfl = ti.field(Real, ())
+        self.cfl[None] = cfl
+
+    @property
+    def name(self) -> str:
+        """Name of the exchange."""
+        return self.exchange.name
+
+    def run(self) -> None:
+        """Exchange once, unless the clock has paused."""
+        self.particles_to_grid()
+        self.update_grid()
+        self.grid_to_particles()
+
+    @ti.kernel
+    def particles_to_grid(self):
+        """Add to the nodes what every particle gives (p2g)."""
+        blocks = self.stencil.block_count[None] * self.clock.running[None]
+        if ti.static(not self.stencil.atomic):
+            for t in range(blocks * TASK):
+                if t & (TASK - 1) == 0:
+                    self.scatter_block(t // TASK)
+        else:
+            for n in range(blocks * COPY):
+                self.stencil.nodes[n] = vec4(0.0)
+            for p in range(self.stencil.shared_count[None] * self.clock.running[None]):
+                self.scatter(p, self.stencil.owner[p])
+
+    @ti.kernel
+    def update_grid(self):
+        """Sum the copies of every node and divide by its mass."""
+        for n in range(self.stencil.tile_count[None] * TILE * self.clock.running[None]):
+            tile, inner = n // TILE, in_copy(node_in_tile(n))
+            total = vec4(0.0)
+            for corner in range(8):
+                b = self.stencil.source[tile, corner]
+                if b >= 0:
+                    total += self.stencil.nodes[b * COPY + corner_offset(corner) + inner]
+            if total[3] > 0.0:
+                mean = vec3(total[0] / total[3], total[1] / total[3], total[2] / total[3])
+                mean = self.exchange.nodes.apply(self.stencil.node_position(tile, n), mean)
+                result = vec4(mean, total[3])
+                for corner in range(8):
+                    b = self.stencil.source[tile, corner]
+                    if b >= 0:
+                        self.stencil.nodes[b * COPY + corner_offset(corner) + inner] = result
+
+    @ti.kernel
+    def grid_to_particles(self):
+        """Let every particle take from its nodes (g2p)."""
+        if ti.static(not self.stencil.atomic):
+            for t in range(self.stencil.block_count[None] * self.clock.running[None] * TASK):
+                if t & (TASK - 1) == 0:
+                    self.report(self.gather_block(t // TASK))
+        else:
+            for p in range(self.stencil.shared_count[None] * self.clock.running[None]):
+                self.report(self.gather(p, self.stencil.owner[p]))
+        for k in range(self.stencil.ballistic_count[None] * self.clock.running[None]):
+            self.report(self.exchange.take_alone(self.stencil.shared_count[None] + k, self.dx()))
+
+    @ti.func
+    def scatter_block(self, b):
+        """Clear the copy of block b and scatter its particles."""
+        for n in range(b * COPY, (b + 1) * COPY):
+            self.stencil.nodes[n] = vec4(0.0)
+        for p in range(self.stencil.first[b], self.stencil.first[b + 1]):
+            self.scatter(p, b)
+
+    @ti.func
+    def gather_block(self, b):
+        """Let the particles of block b take; returns the tightest limits of their next time step."""
+        limits = no_limits()
+        for p in range(self.stencil.first[b], self.stencil.first[b + 1]):
+            limits = tightest(limits, self.gather(p, b))
+        return limits
+
+    @ti.func
+    def scatter(self, p, b):
+        """Add what particle p gives to the nodes of block b."""
+        n, f = self.stencil.locate(p, b)
+        mass, momentum, affine = self.exchange.give(p, self.dx())
+        self.stencil.scatter(n, f, mass, momentum, affine)
+
+    @ti.func
+    def gather(self, p, b):
+        """Let particle p take from its nodes in block b; returns its limits of the next time step."""
+        n, f = self.stencil.locate(p, b)
+        w = spline_weights(f)
+        v, mass, L = self.stencil.gather(n, f, w)
+        limits = no_limits()
+        if self.stencil.is_ballistic(p, n, w, mass):
+            limits = self.exchange.take_alone(p, self.dx())
+        else:
+            limits = self.exchange.take(p, v, L, self.dx())
+        return limits
+
+    @ti.func
+    def report(self, limits):
+        """Tell the clock how long the next step may be."""
+        self.clock.report_rate(rate_of(limits, self.cfl[None], self.dx()))
+
+    @ti.func
+    def dx(self):
+        """Return the grid spacing [m] in the precision of the fields."""
+        return ti.cast(self.stencil.dx[None], Real)
+
+
+@ti.func
+def corner_offset(corner):
+    """Return the index of the first node of a tile in the copy of the block at one of its corners."""
+    return in_copy(BLOCK_EDGE * corner_coordinates(corner))
