@@ -92,7 +92,7 @@ OUTCOMES = {
     "kurtosis_a": Quantity(
         "kurtosis of the particles' positions along the longest axis of the largest remnant",
         "1",
-        "<x^4>/<x^2>^2: 15/7 of a uniform ellipsoid, less of two lobes, 1 of two points",
+        "<x^4>/<x^2>^2: 15/7 of a uniform ellipsoid, less of two lobes, 1 of two points, more of a core with tails",
     ),
     "bulk_density": Quantity(
         "bulk density of the largest remnant in its inertia ellipsoid",
