@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.remnant.conservation import drifts, read_history
-from analysis.remnant.ellipsoid import THIN, bulk_density, ellipsoid_of
-from analysis.remnant.fragments import as_points, bound_to_largest, clumps_of
+from analysis.remnant.ellipsoid import THIN, bulk_density, ellipsoid_of, kurtosis
+from analysis.remnant.flow import linear_flow
+from analysis.remnant.fragments import Clumps, as_points, bound_to_largest, clumps_of
 from analysis.remnant.hull import hull_of
 from analysis.remnant.particles import Integers, Particles, read_particles, snapshots
-from analysis.remnant.settling import is_settled, shape_change
+from analysis.remnant.settling import recent_changes
 from analysis.remnant.spin import spin_period
 from analysis.remnant.variables import DAMAGED, DRIFTS, UndescribedError, described
 from engine.errors import JobError, RunFault, SceneError
@@ -130,26 +131,26 @@ def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Number
     if particles.scene_hash != scene.hash():
         raise JobError(f"{job.path}: holds particles that are not of the scene in this directory")
     remnant = particles.select(labels == 0)
-    change = shape_change(remnant, job)
+    clumps = as_points(labels, particles.mass, particles.position, particles.velocity)
+    bound = bound_to_largest(clumps)
     last = drifts(read_history(job.history), scene).isel(time=-1)
     return described(
-        _masses(particles, labels, scene.bodies[0].mass)
+        _masses(clumps, bound, scene.bodies[0].mass)
         | _ellipsoid(remnant)
         | _hull(remnant)
         | _interior(remnant)
-        | {"time_after_contact": particles.time, "shape_change": change, "settled": is_settled(change)}
+        | _motion(remnant, particles.select(bound[labels]))
+        | _settling(remnant, job)
         | {drift: float(last[name]) for drift, name in DRIFTS.items()}
         | {"steps": float(status.step), "wall_time": status.wall_time, "cpu_time": status.cpu_time}
     )
 
 
-def _masses(particles: Particles, labels: Integers, target: float) -> Numbers:
-    clumps = as_points(labels, particles.mass, particles.position, particles.velocity)
-    bound = clumps.mass[bound_to_largest(clumps)].sum()
+def _masses(clumps: Clumps, bound: NDArray[np.bool_], target: float) -> Numbers:
     return {
         "mass_ratio": float(clumps.mass[0] / target),
         "second_mass_ratio": float(clumps.mass[1:2].sum() / target),
-        "bound_mass_ratio": float(bound / target),
+        "bound_mass_ratio": float(clumps.mass[bound].sum() / target),
         "clumps": float(len(clumps.mass)),
     }
 
@@ -163,7 +164,9 @@ def _ellipsoid(remnant: Particles) -> Numbers:
         "c_over_a_extended": extended.c_over_a,
         **{f"axis_{name}": float(axis) for name, axis in zip("abc", shape.axes, strict=True)},
         "c_unresolved": float(shape.axes[2] < THIN * remnant.spacing),
+        "kurtosis_a": kurtosis(remnant.position, remnant.mass, shape.directions[0]),
         "bulk_density": bulk_density(float(remnant.mass.sum()), shape.volume),
+        "particle_density": bulk_density(float(remnant.mass.sum()), float((remnant.mass / remnant.rho).sum())),
         "spin_period": spin_period(remnant.position, remnant.velocity, remnant.mass),
     }
 
@@ -182,6 +185,31 @@ def _interior(remnant: Particles) -> Numbers:
     low, median, high = np.percentile(remnant.J, [5.0, 50.0, 95.0])
     damaged = remnant.mass[remnant.damage > DAMAGED].sum() / remnant.mass.sum()
     return {"J_p05": float(low), "J_p50": float(median), "J_p95": float(high), "damaged_fraction": float(damaged)}
+
+
+def _motion(remnant: Particles, bound: Particles) -> Numbers:
+    """What moves inside the largest remnant and the bound mass, and what of the latter bears pressure."""
+    compressed = bound.mass[bound.J < 1.0].sum() / bound.mass.sum()
+    return {"compressed_fraction": float(compressed)} | _flow(remnant, "flow") | _flow(bound, "bound_flow")
+
+
+def _flow(particles: Particles, prefix: str) -> Numbers:
+    flow = linear_flow(particles.position, particles.velocity, particles.mass)
+    return {
+        f"{prefix}_spin_rate": flow.spin_rate,
+        f"{prefix}_strain_rate": flow.strain_rate,
+        f"{prefix}_residual": flow.residual,
+    }
+
+
+def _settling(remnant: Particles, job: JobDirectory) -> Numbers:
+    changes = recent_changes(remnant, job)
+    return {
+        "time_after_contact": remnant.time,
+        "shape_change": changes.shape,
+        "mass_change": changes.mass,
+        "settled": changes.settled,
+    }
 
 
 def _line(text: object) -> str:

@@ -15,7 +15,7 @@ from engine.quantities import PARTICLES
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-MEASURED = ("position", "velocity", "mass", "J", "damage")
+MEASURED = ("position", "velocity", "mass", "J", "rho", "damage")
 """Variables of a particle file of which outcomes are made, beside the body."""
 
 
@@ -28,6 +28,7 @@ class Particles:
         velocity: [m/s], shape [particle_count, 3].
         mass: [kg], shape [particle_count].
         J: det F = rho0/rho [-], shape [particle_count].
+        rho: density [kg/m3], shape [particle_count].
         damage: [-], shape [particle_count].
         body: index of the body in the scene, shape [particle_count].
         spacing: particle spacing h [m].
@@ -40,6 +41,7 @@ class Particles:
     velocity: Array
     mass: Array
     J: Array
+    rho: Array
     damage: Array
     body: Integers
     spacing: float

@@ -27,6 +27,27 @@ def _drift_of(name: str) -> Quantity:
     return Quantity(f"change of the {total}", "1", f"at the end of the run, relative to {_SCALES[name]}")
 
 
+def _flow(prefix: str, of: str) -> dict[str, Quantity]:
+    """Outcomes of the linear flow v = v0 + L (x - x0) that fits some particles best."""
+    return {
+        f"{prefix}_spin_rate": Quantity(
+            f"spin rate of the linear flow that fits {of}",
+            "rad s-1",
+            "half the vorticity of v0 + L (x - x0), fitted by least squares weighted by mass; NaN in one plane",
+        ),
+        f"{prefix}_strain_rate": Quantity(
+            f"largest principal strain rate of the linear flow that fits {of}",
+            "s-1",
+            f"of sym L, as {prefix}_spin_rate: how fast it stretches, 0 of a rigid body",
+        ),
+        f"{prefix}_residual": Quantity(
+            f"speed in {of} that its linear flow leaves over",
+            "1",
+            "root mean square of v - v0 - L (x - x0) over that of v - v0: 0 of a linear flow; NaN without motion",
+        ),
+    }
+
+
 OUTCOMES = {
     "mass_ratio": Quantity(
         "mass of the largest remnant over the mass of the target",
@@ -68,8 +89,21 @@ OUTCOMES = {
     "extent_a": Quantity("size of the largest remnant along the longest axis of its hull", "m", "particles as points"),
     "extent_b": Quantity("size of the largest remnant along the intermediate axis of its hull", "m", "as extent_a"),
     "extent_c": Quantity("size of the largest remnant along the shortest axis of its hull", "m", "as extent_a"),
+    "kurtosis_a": Quantity(
+        "kurtosis of the particles' positions along the longest axis of the largest remnant",
+        "1",
+        "<x^4>/<x^2>^2: 15/7 of a uniform ellipsoid, less of two lobes, 1 of two points, more of a core with tails",
+    ),
     "bulk_density": Quantity(
-        "bulk density of the largest remnant", "kg m-3", "mass over pi/6 axis_a axis_b axis_c: too high when thin"
+        "bulk density of the largest remnant in its inertia ellipsoid",
+        "kg m-3",
+        "mass over pi/6 axis_a axis_b axis_c, not over the volume that is filled: two touching spheres fill 0.82 of "
+        "it, a stretched dumbbell 0.3; too high when thin",
+    ),
+    "particle_density": Quantity(
+        "density of the largest remnant from the volumes of its particles",
+        "kg m-3",
+        "mass over the sum of m/rho = J m/rho0; gaps between particles do not count",
     ),
     "spin_period": Quantity(
         "rotation period of the largest remnant", "s", "inverse inertia tensor times angular momentum; NaN if undefined"
@@ -78,13 +112,25 @@ OUTCOMES = {
     "J_p50": Quantity("median of rho0/rho over the particles of the largest remnant", "1"),
     "J_p95": Quantity("95th percentile of rho0/rho over the particles of the largest remnant", "1"),
     "damaged_fraction": Quantity(f"mass fraction of the largest remnant with damage above {DAMAGED:g}", "1"),
+    "compressed_fraction": Quantity(
+        "mass fraction of the bound mass under pressure", "1", "J = rho0/rho below 1; the rest bears none, or tension"
+    ),
+    **_flow("flow", "the largest remnant"),
+    **_flow("bound_flow", "the bound mass"),
     "time_after_contact": Quantity("time of the outcome after point-mass contact", "s"),
     "shape_change": Quantity(
         "largest relative change of b_over_a and c_over_a lately",
         "1",
         f"against the snapshots of the last {WINDOW:.0%} of the time after contact, or more when they are sparse",
     ),
-    "settled": Quantity("shape of the largest remnant is settled", "1", f"shape_change below {TOLERANCE:g}; {_FLAG}"),
+    "mass_change": Quantity(
+        "largest relative change of the mass of the largest remnant lately", "1", "as shape_change"
+    ),
+    "settled": Quantity(
+        "shape and mass of the largest remnant are settled",
+        "1",
+        f"shape_change and mass_change below {TOLERANCE:g}; {_FLAG}",
+    ),
     **{drift: _drift_of(name) for drift, name in DRIFTS.items()},
     "steps": Quantity("time steps", "1"),
     "wall_time": Quantity("computing time", "s"),

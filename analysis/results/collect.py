@@ -12,10 +12,12 @@ from analysis.remnant.outcome import Outcome, Outcomes, outcome
 from analysis.remnant.variables import OUTCOMES
 from analysis.results.error_bars import combine
 from analysis.results.variables import NONE, TEXTS, Attribute, parameter, parameters, plain
-from campaigns.campaign import KeptCampaign, read_campaign
+from campaigns.campaign import FILE, KeptCampaign, read_campaign
+from campaigns.members import ErrorBars
 from engine.errors import SceneError
 from engine.job.directory import JobDirectory, JobState
 from engine.job.storage import write_dataset
+from engine.scene.fields import validate
 
 Column = NDArray[np.float64] | NDArray[np.object_]
 """Numbers or texts of all jobs, shape [job_count]."""
@@ -55,7 +57,8 @@ def collect_with_outcomes(campaign_directory: Path) -> Collected:
     coordinates; those that all jobs share are attributes.
 
     Raises:
-        SceneError: there is no campaign.json, it does not describe a campaign, or another version computed its jobs.
+        SceneError: there is no campaign.json, it does not describe a campaign or its error bars, or another version
+            computed its jobs.
     """
     campaign = read_campaign(campaign_directory, KeptCampaign)
     directories = {job.id: JobDirectory(campaign_directory / job.directory) for job in campaign.jobs}
@@ -64,9 +67,15 @@ def collect_with_outcomes(campaign_directory: Path) -> Collected:
     results = assemble(campaign, [outcomes[job.id] for job in campaign.jobs])
     if campaign.has_error_bars:
         write_dataset(campaign_directory / "members.nc", results)
-        results = combine(results)
+        results = combine(results, _error_bars(campaign, campaign_directory / FILE))
     write_dataset(campaign_directory / "results.nc", results)
     return Collected(campaign, outcomes, results)
+
+
+def _error_bars(campaign: KeptCampaign, path: Path) -> ErrorBars:
+    """The error bars of the study as campaign.json has them; what an earlier version did not write is the default."""
+    table = campaign.study.get("error_bars")
+    return validate(ErrorBars, table if isinstance(table, dict) else {}, f"{path}: error_bars")
 
 
 def _require_own_version(outcomes: Outcomes, directory: Path) -> None:

@@ -5,6 +5,7 @@ import xarray as xr
 
 from analysis.remnant.variables import COSTS, OUTCOMES, WITHOUT_ERROR
 from analysis.results.statistics import difference, resolved, standard_error
+from campaigns.members import ErrorBars
 from engine.job.directory import JobState
 
 MEMBERS = ("resolution", "seed")
@@ -22,8 +23,10 @@ _WORST_FIRST = (
 """Of the states of its members, a point has the first in this order."""
 
 _ERROR = (
-    "sqrt(e^2 + d^2) with the standard error e of the mean over seeds and the difference d of the means at both "
-    "resolutions; NaN if one is unknown"
+    "sqrt(e^2 + (k d)^2) with the standard error e of the mean over seeds, the difference d of the means at both "
+    "resolutions, and k = 1/(f^(-p/3) - 1) = {factor:.3g}, which makes of d the error of the finer resolution for "
+    "order p = {order:g} in particle spacing and the fraction f = {coarser:g} of particles in the coarser one; NaN if "
+    "e or d is unknown"
 )
 _RESOLVED = (
     "1 where the difference of the means at both resolutions exceeds the half-width of its 95 % confidence interval "
@@ -31,27 +34,29 @@ _RESOLVED = (
 )
 
 
-def combine(members: xr.Dataset) -> xr.Dataset:
+def combine(members: xr.Dataset, bars: ErrorBars) -> xr.Dataset:
     """Combine the members of each point: the mean over the seeds of the finer resolution, its error, and their number.
 
-    `<variable>_error` adds, in quadrature, the standard error of that mean and its difference to the mean of the
-    coarser resolution; it is NaN while one of them is unknown. `<variable>_resolved` is 1 where that difference
-    exceeds its confidence interval over the seeds. Flags become a fraction of the seeds, costs the sum of all members.
+    `<variable>_error` adds, in quadrature, the standard error of that mean and the error of its resolution, which is
+    its difference to the mean of the coarser one times `ErrorBars.error_over_difference`; it is NaN while one of them
+    is unknown. `<variable>_resolved` is 1 where that difference exceeds its confidence interval over the seeds. Flags
+    become a fraction of the seeds, costs the sum of all members.
 
     Args:
         members: the data set of all runs, with the dimensions `MEMBERS` last.
+        bars: the resolutions, and the order by which their difference is extrapolated.
     """
     fine = members.sel(resolution="fine")
     first = fine.isel(seed=0, drop=True).drop_vars("resolution")
     points = first.drop_vars([*OUTCOMES, "state", "reason"])
     for name in OUTCOMES:
-        points = points.assign(_measured(members[name]))
+        points = points.assign(_measured(members[name], bars))
     return points.assign(_states(members)).assign_attrs(
         seeds=members["seed"].values.tolist(), members="two resolutions, coarse and fine, with all seeds: members.nc"
     )
 
 
-def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
+def _measured(values: xr.DataArray, bars: ErrorBars) -> dict[str, xr.DataArray]:
     """The value of a point and, where it is a measured number, its error."""
     name, attributes = str(values.name), values.attrs
     fine, coarse = (values.sel(resolution=which, drop=True) for which in ("fine", "coarse"))
@@ -60,8 +65,13 @@ def _measured(values: xr.DataArray) -> dict[str, xr.DataArray]:
     mean = _described(fine.mean("seed"), attributes, "mean over seeds at the finer resolution")
     if name in WITHOUT_ERROR:
         return {name: mean}
-    error = ((mean - coarse.mean("seed")) ** 2 + standard_error(fine) ** 2) ** 0.5
-    about = {"long_name": f"error of the {attributes['long_name']}", "units": attributes["units"], "comment": _ERROR}
+    factor = bars.error_over_difference
+    error = ((factor * (mean - coarse.mean("seed"))) ** 2 + standard_error(fine) ** 2) ** 0.5
+    about = {
+        "long_name": f"error of the {attributes['long_name']}",
+        "units": attributes["units"],
+        "comment": _ERROR.format(factor=factor, order=bars.order, coarser=bars.coarser),
+    }
     flag = {
         "long_name": f"significant change with resolution of the {attributes['long_name']}",
         "units": "1",

@@ -14,6 +14,7 @@ HEADINGS = {
     "velocity": "v [m/s]",
     "angle": "angle [deg]",
     "mass_ratio": "M_lr/M_t",
+    "second_mass_ratio": "second",
     "bound_mass_ratio": "bound",
     "b_over_a": "b/a",
     "c_over_a": "c/a",
@@ -29,7 +30,16 @@ HEADINGS = {
 }
 """Columns of the printed table."""
 
-DECIMALS = {"M_lr/M_t": 3, "bound": 3, "b/a": 2, "c/a": 2, "c/a ext.": 2, "density [kg/m3]": 0, "period [h]": 2}
+DECIMALS = {
+    "M_lr/M_t": 3,
+    "second": 3,
+    "bound": 3,
+    "b/a": 2,
+    "c/a": 2,
+    "c/a ext.": 2,
+    "density [kg/m3]": 0,
+    "period [h]": 2,
+}
 
 NOT_A_SERIES = ("velocity", "angle", "end_time", "seed", "case")
 """Coordinates in which the points of one series of collisions may differ."""

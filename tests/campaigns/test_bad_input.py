@@ -146,6 +146,10 @@ BAD_STUDIES = {
     "misspelt error bars": (HEAD + GRID + "[error_bars]\nseed = [1, 2]\n", ["error_bars.seed", "mean 'seeds'"]),
     "one seed": (HEAD + GRID + "[error_bars]\nseeds = [1]\n", ["error_bars.seeds", "at least 2"]),
     "equal seeds": (HEAD + GRID + "[error_bars]\nseeds = [1, 1]\n", ["error_bars", "twice"]),
+    "an order of zero": (
+        HEAD + GRID + "[error_bars]\norder = 0\nseeds = [1, 2]\n",
+        ["error_bars.order", "greater than 0"],
+    ),
     "second resolution as fine": (HEAD + GRID + "[error_bars]\ncoarser = 1.0\nseeds = [1, 2]\n", ["coarser", "1"]),
     "second resolution of as many particles": (
         HEAD + "[collision]\nparticles = 1\n" + GRID + "[error_bars]\nseeds = [1, 2]\n",

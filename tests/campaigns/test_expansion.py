@@ -195,6 +195,19 @@ def test_error_bars_run_every_point_at_two_resolutions_with_all_seeds():
     assert {job.id[-8:] for job in plain.jobs} < {job.id[-8:] for job in campaign.jobs}
 
 
+def test_the_order_of_error_bars_changes_no_job():
+    ids = [
+        [
+            job.id
+            for job in expand(
+                Study(name="n", axes={"velocity": [1], "angle": [5]}, error_bars={"seeds": [1, 2], **order}), "test"
+            ).jobs
+        ]
+        for order in ({}, {"order": 2.0})
+    ]
+    assert ids[0] == ids[1] and len(ids[0]) == 4
+
+
 def test_expansion_leaves_the_study_as_it_is():
     study = Study(name="n", collision={"viscosity": {}}, axes={"velocity": [1], "angle": [5], "viscosity.bulk": [1]})
     before = study.model_dump()

@@ -84,7 +84,9 @@ def write_job(
         write_dataset(job.final, final.assign_attrs(scene_hash=scene_in(path).hash()))
 
 
-def write_campaign(directory: Path, coords: dict[str, list[Any]], jobs: list[tuple[dict[str, Any], Collision]]) -> None:
+def write_campaign(
+    directory: Path, coords: dict[str, list[Any]], jobs: list[tuple[dict[str, Any], Collision]], **study: Any
+) -> None:
     """A campaign.json for jobs at the given indices; the job of each is jobs/<number>."""
     directory.mkdir(parents=True, exist_ok=True)
     entries = [
@@ -96,5 +98,5 @@ def write_campaign(directory: Path, coords: dict[str, list[Any]], jobs: list[tup
         }
         for number, (index, collision) in enumerate(jobs)
     ]
-    content = {"name": "fake", "physics_version": 1, "study": {}, "dims": list(coords), "coords": coords}
+    content = {"name": "fake", "physics_version": 1, "study": study, "dims": list(coords), "coords": coords}
     write_json(directory / "campaign.json", content | {"jobs": entries})

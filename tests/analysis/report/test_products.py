@@ -82,7 +82,7 @@ def test_the_printed_table_shows_a_dash_for_what_is_not_there(tmp_path: Path) ->
     lines = printed(shape_table(collect(campaign(tmp_path, coords, grid(coords), 1)))).splitlines()
     assert "M_lr/M_t" in lines[0] and "nan" not in "".join(lines).lower()
     assert lines[1].split()[-1] == "done"
-    assert lines[2].split()[2:-1] == ["-"] * 11 and lines[2].split()[-1] == "pending"
+    assert lines[2].split()[2:-1] == ["-"] * 12 and lines[2].split()[-1] == "pending"
 
 
 def test_series_are_told_apart_by_everything_but_velocity_angle_and_seed(tmp_path: Path) -> None:

@@ -67,6 +67,38 @@ def test_a_done_job_is_measured(tmp_path: Path) -> None:
     assert cell["c_unresolved"] == 0.0 and np.isnan(cell["settled"])
 
 
+def test_what_moves_inside_a_remnant_is_measured(tmp_path: Path) -> None:
+    one_job(tmp_path)
+    cell = collect(tmp_path).isel(velocity=0, angle=0)
+    for flow in ("flow", "bound_flow"):
+        np.testing.assert_allclose(cell[f"{flow}_spin_rate"], OMEGA[2], rtol=1e-9)
+        assert abs(cell[f"{flow}_strain_rate"]) < 1e-9 * OMEGA[2] and cell[f"{flow}_residual"] < 1e-9
+    np.testing.assert_allclose(cell["kurtosis_a"], 15.0 / 7.0, rtol=0.03)
+    assert cell["compressed_fraction"] == 0.0
+
+
+def test_density_is_that_of_the_particles_and_pressure_that_of_the_bound_mass(tmp_path: Path) -> None:
+    final = remnant()
+    J = np.where(np.arange(len(POINTS) + 1) % 4 == 0, 0.5, 1.25)
+    final["J"], final["rho"] = ("particle", J), ("particle", RHO0 / J)
+    one_job(tmp_path, final=final)
+    cell = collect(tmp_path).isel(velocity=0, angle=0)
+    np.testing.assert_allclose(cell["particle_density"], RHO0 / J[:-1].mean())
+    np.testing.assert_allclose(cell["compressed_fraction"], (J[:-1] < 1.0).mean())
+
+
+def test_flow_and_pressure_of_the_bound_mass_are_not_those_of_the_remnant(tmp_path: Path) -> None:
+    position = np.concatenate([POINTS, [[5e5, 0.0, 0.0]]])
+    velocity = np.concatenate([np.cross(OMEGA, POINTS), [[0.0, 1.0, 0.0]]])
+    final = particles(position, SPACING, velocity, time=900.0)
+    final["J"][-1] = 0.999
+    one_job(tmp_path, final=final)
+    cell = collect(tmp_path).isel(velocity=0, angle=0)
+    assert cell["bound_mass_ratio"] > cell["mass_ratio"]
+    np.testing.assert_allclose(cell["compressed_fraction"], 1.0 / (len(POINTS) + 1))
+    assert cell["flow_residual"] < 1e-9 and cell["bound_flow_residual"] > 1e-3
+
+
 def test_a_thin_remnant_is_flagged(tmp_path: Path) -> None:
     points, spacing = lattice_ellipsoid((3e5, 2e5, 3e4), 400)
     one_job(tmp_path, final=particles(points, spacing, time=900.0))
