@@ -46,13 +46,15 @@ HISTORY = {
     ),
     "kinetic_energy": Quantity("kinetic energy of the mean motion of particles", "J"),
     "affine_kinetic_energy": Quantity("kinetic energy of the motion inside particles", "J"),
-    "internal_energy": Quantity("work done by stress, elastic energy included", "J"),
+    "internal_energy": Quantity("work done by stress, elastic energy included, and heat of the transfer", "J"),
     "elastic_energy": Quantity("energy stored in elastic strain, a part of internal_energy", "J"),
     "gravitational_energy": Quantity("gravitational energy", "J"),
     "half_step_work": Quantity("work in half a step: takes kinetic energy to the time of the other energies", "J"),
-    "total_energy": Quantity(
-        "kinetic, affine, internal and gravitational energy; what is lost is numerical dissipation", "J"
-    ),
+    "transfer_heat": Quantity("energy that motion lost to the transfer since the start", "J"),
+    "plastic_heat": Quantity("energy that motion lost to plastic flow since the start", "J"),
+    "viscous_heat": Quantity("energy that motion lost to viscosity since the start", "J"),
+    "lost_energy": Quantity("part of transfer_heat that internal_energy does not contain", "J"),
+    "total_energy": Quantity("kinetic, affine, internal and gravitational energy at one time, and lost_energy", "J"),
     "gravity_change": Quantity("relative change of gravity over the interval for which it was held", "1"),
     "gravity_force": Quantity("net force of gravity, which is taken out, over the sum of all forces", "1"),
     "gravity_torque": Quantity(
@@ -61,12 +63,16 @@ HISTORY = {
     "largest_speed": Quantity("highest speed of a particle", "m s-1"),
     "largest_compression": Quantity("highest rho/rho0 of a particle", "1"),
     "damaged_fraction": Quantity("mean damage of all particles", "1"),
+    "compressed_fraction": Quantity("fraction of the mass that is denser than at rest, and so bears pressure", "1"),
     "isolated": Quantity("particles with no other in their block or in one beside it", "1"),
 }
 """Variables of history.nc."""
 
 CONSERVED = ("mass", "momentum", "angular_momentum", "total_energy")
-"""Variables of `HISTORY` that a closed system conserves; the total energy only without numerical dissipation."""
+"""Variables of `HISTORY` that a closed system conserves; the total energy not with the transfer `apic`."""
+
+HEATS = ("transfer_heat", "plastic_heat", "viscous_heat")
+"""Variables of `HISTORY` that motion loses, by cause."""
 
 PARTICLES = {
     "position": Quantity("position", "m", is_vector=True),

@@ -7,7 +7,7 @@ import xarray as xr
 
 from engine.errors import JobError
 from engine.job.storage import read_dataset
-from engine.quantities import CONSERVED, HISTORY
+from engine.quantities import CONSERVED, HEATS, HISTORY
 from engine.scene.bodies import Body
 from engine.scene.scene import Scene
 
@@ -22,7 +22,7 @@ def read_history(path: Path) -> xr.Dataset:
         JobError: the file is missing, damaged, empty, or lacks a quantity.
     """
     history = read_dataset(path)
-    missing = [name for name in ("time", "kinetic_energy", *CONSERVED) if name not in history.variables]
+    missing = [name for name in ("time", "kinetic_energy", *HEATS, *CONSERVED) if name not in history.variables]
     if missing or not history.sizes["time"]:
         raise JobError(f"{path}: not a history: lacks {', '.join(missing) or 'any row'}")
     return history
@@ -43,6 +43,12 @@ def drifts(history: xr.Dataset, scene: Scene) -> xr.Dataset:
         "total_energy": float(start["kinetic_energy"]),
     }
     return xr.Dataset({name: _size(history[name] - start[name]) / _scale(scales[name]) for name in CONSERVED})
+
+
+def heats(history: xr.Dataset) -> dict[str, float]:
+    """Energy that motion has lost at the end, by cause, relative to the kinetic energy at the start [-]."""
+    start = _scale(float(history["kinetic_energy"][0]))
+    return {name: float(history[name][-1]) / start for name in HEATS}
 
 
 def _scales(scene: Scene) -> tuple[float, float]:

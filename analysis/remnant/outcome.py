@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.remnant.conservation import drifts, read_history
+from analysis.remnant.conservation import drifts, heats, read_history
 from analysis.remnant.ellipsoid import THIN, bulk_density, ellipsoid_of, kurtosis
 from analysis.remnant.flow import linear_flow
 from analysis.remnant.fragments import Clumps, as_points, bound_to_largest, clumps_of
@@ -133,7 +133,8 @@ def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Number
     remnant = particles.select(labels == 0)
     clumps = as_points(labels, particles.mass, particles.position, particles.velocity)
     bound = bound_to_largest(clumps)
-    last = drifts(read_history(job.history), scene).isel(time=-1)
+    history = read_history(job.history)
+    last = drifts(history, scene).isel(time=-1)
     return described(
         _masses(clumps, bound, scene.bodies[0].mass)
         | _ellipsoid(remnant)
@@ -142,6 +143,7 @@ def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Number
         | _motion(remnant, particles.select(bound[labels]))
         | _settling(remnant, job)
         | {drift: float(last[name]) for drift, name in DRIFTS.items()}
+        | heats(history)
         | {"steps": float(status.step), "wall_time": status.wall_time, "cpu_time": status.cpu_time}
     )
 

@@ -3,7 +3,7 @@
 from analysis.remnant.ellipsoid import THIN
 from analysis.remnant.fragments import LINKING_LENGTH
 from analysis.remnant.settling import TOLERANCE, WINDOW
-from engine.quantities import CONSERVED, Quantity
+from engine.quantities import CONSERVED, HEATS, HISTORY, Quantity
 
 DAMAGED = 0.5
 """A particle with more damage than this counts as damaged."""
@@ -46,6 +46,10 @@ def _flow(prefix: str, of: str) -> dict[str, Quantity]:
             "root mean square of v - v0 - L (x - x0) over that of v - v0: 0 of a linear flow; NaN without motion",
         ),
     }
+
+
+def _heat(name: str) -> Quantity:
+    return Quantity(HISTORY[name].long_name, "1", "at the end of the run, relative to the kinetic energy at the start")
 
 
 OUTCOMES = {
@@ -132,6 +136,7 @@ OUTCOMES = {
         f"shape_change and mass_change below {TOLERANCE:g}; {_FLAG}",
     ),
     **{drift: _drift_of(name) for drift, name in DRIFTS.items()},
+    **{name: _heat(name) for name in HEATS},
     "steps": Quantity("time steps", "1"),
     "wall_time": Quantity("computing time", "s"),
     "cpu_time": Quantity("processor time of all threads", "s"),

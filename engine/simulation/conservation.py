@@ -11,6 +11,9 @@ from engine.state.particles import Arrays
 Row = dict[str, NDArray[np.float64]]
 """One row of the history: values by name (engine/quantities.py), numbers or vectors of shape [3]."""
 
+CAUSES = ("transfer", "plastic", "viscous")
+"""What takes energy from the motion."""
+
 
 @dataclass(frozen=True)
 class Totals:
@@ -27,6 +30,8 @@ class Totals:
         gravitational_energy: potential energy of gravity [J].
         half_step_work: work of stress and gravity in half the next step [J]. Velocities belong half a step before
             positions; this takes kinetic energy to the time of the other energies.
+        transfer_heat, plastic_heat, viscous_heat: energy that motion has lost since the start, by cause [J].
+        lost_energy: part of the heat of the transfer that internal energy does not contain [J].
     """
 
     mass: float
@@ -38,27 +43,39 @@ class Totals:
     elastic_energy: float
     gravitational_energy: float
     half_step_work: float
+    transfer_heat: float
+    plastic_heat: float
+    viscous_heat: float
+    lost_energy: float
 
     @property
     def total_energy(self) -> float:
-        """Sum of kinetic, affine, internal and gravitational energy [J]; dissipation lowers it."""
-        return self.kinetic_energy + self.affine_kinetic_energy + self.internal_energy + self.gravitational_energy
+        """Sum of kinetic, affine, internal and gravitational energy at one time, and what the transfer lost [J]."""
+        kinetic = self.kinetic_energy + self.affine_kinetic_energy + self.half_step_work
+        return kinetic + self.internal_energy + self.gravitational_energy + self.lost_energy
 
 
 def totals(
-    state: Arrays, inertia: float, elastic: Scalars, gravitational_energy: float, half_step_work: float
+    state: Arrays,
+    inertia: float,
+    elastic: Scalars,
+    gravitational_energy: float,
+    half_step_work: float,
+    takes_heat: bool = True,
 ) -> Totals:
     """Return the conserved quantities of a state.
 
     Args:
-        state: fields x, v, C, E and mass of every particle.
+        state: fields x, v, C, E, mass and the heats of every particle.
         inertia: moment of inertia per mass of the affine motion of a particle [m^2].
         elastic: elastic energy of every particle [J], shape [particle_count].
         gravitational_energy: potential energy of gravity [J].
         half_step_work: work of stress and gravity in half the next step [J].
+        takes_heat: whether internal energy contains the heat of the transfer.
     """
     m, x, v, C, E = (state[name] for name in ("mass", "x", "v", "C", "E"))
     skew = np.stack([C[:, 2, 1] - C[:, 1, 2], C[:, 0, 2] - C[:, 2, 0], C[:, 1, 0] - C[:, 0, 1]], axis=1)
+    transfer, plastic, viscous = (float(np.sum(m * state[f"{cause}_heat"])) for cause in CAUSES)
     return Totals(
         mass=float(np.sum(m)),
         momentum=np.sum(m[:, None] * v, axis=0),
@@ -69,6 +86,10 @@ def totals(
         elastic_energy=float(np.sum(elastic)),
         gravitational_energy=gravitational_energy,
         half_step_work=half_step_work,
+        transfer_heat=transfer,
+        plastic_heat=plastic,
+        viscous_heat=viscous,
+        lost_energy=0.0 if takes_heat else transfer,
     )
 
 

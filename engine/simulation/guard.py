@@ -14,6 +14,7 @@ from engine.mpm.time_step import rate_of_motion
 from engine.scene.scene import Scene
 from engine.simulation.bounds import (
     compression_limit,
+    dissipates,
     energy_growth,
     keeps_energy,
     keeps_momentum,
@@ -26,8 +27,8 @@ from engine.state.particles import Arrays, Particles
 SPEED_FACTOR = 10.0
 """Largest speed in units of the scene's [-]: rebounds reach two or three of them, jets a few."""
 
-ENERGY_GROWTH = 0.05
-"""Largest growth of the total energy in the measure of `energy_growth` [-]; its largest loss is 1."""
+ENERGY_CHANGE = 1e-3
+"""Largest change of the total energy in the measure of `energy_growth` [-]; its largest loss is 1 if it may fall."""
 
 LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
 """Largest change of the total momentum in units of mass times the scene's speeds [-]."""
@@ -111,8 +112,9 @@ class Guard:
 
     def _check_energy(self, row: Row, time: float) -> None:
         growth = energy_growth(self.scene, row, self.start)
-        if keeps_energy(self.scene) and not -1.0 <= growth <= ENERGY_GROWTH:
-            allowed = f"between -1 and {ENERGY_GROWTH:g}"
+        least = -1.0 if dissipates(self.scene) else -ENERGY_CHANGE
+        if keeps_energy(self.scene) and not least <= growth <= ENERGY_CHANGE:
+            allowed = f"between {least:g} and {ENERGY_CHANGE:g}"
             quantity = "growth of total energy, as a fraction of all energies"
             raise stop(quantity, growth, allowed, time, advice=SMALLER_STEPS)
 

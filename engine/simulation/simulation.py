@@ -219,7 +219,7 @@ class Simulation:
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
         elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, rho0, self.next_dt)
         inertia, gravitational = self.scheme.inertia(self.scene.dx), self.gravity.energy(state["x"], state["mass"])
-        return totals(state, inertia, elastic, gravitational, work)
+        return totals(state, inertia, elastic, gravitational, work, self.scene.numerics.transfer_heat)
 
     def rho0(self, state: Arrays) -> Scalars:
         """Return the reference density of every particle [kg/m^3], shape [particle_count].

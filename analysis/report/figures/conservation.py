@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 
 from analysis.remnant.conservation import drifts, read_history
 from analysis.remnant.outcome import Outcomes
-from analysis.report.figures.style import BLUE, GREEN, ORANGE, PURPLE, nothing_done, shades, styled
+from analysis.report.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, nothing_done, shades, styled
 from analysis.results.tables import points
 from engine.job.directory import JobState
 from engine.quantities import CONSERVED
@@ -21,6 +21,7 @@ ENERGIES = {
     "kinetic_energy": ("kinetic", BLUE),
     "affine_kinetic_energy": ("kinetic, affine part", PURPLE),
     "internal_energy": ("internal", ORANGE),
+    "transfer_heat": ("of it heat of the transfer", GREY),
     "gravitational_energy": ("gravitational", GREEN),
     "total_energy": ("total", "black"),
 }
