@@ -53,7 +53,9 @@ HISTORY = {
     "transfer_heat": Quantity("energy that motion lost to the transfer since the start", "J"),
     "plastic_heat": Quantity("energy that motion lost to plastic flow since the start", "J"),
     "viscous_heat": Quantity("energy that motion lost to viscosity since the start", "J"),
-    "lost_energy": Quantity("part of transfer_heat that internal_energy does not contain", "J"),
+    "lost_energy": Quantity(
+        "energy that affine motion lost in free motion, and transfer_heat if internal_energy does not contain it", "J"
+    ),
     "total_energy": Quantity("kinetic, affine, internal and gravitational energy at one time, and lost_energy", "J"),
     "gravity_change": Quantity("relative change of gravity over the interval for which it was held", "1"),
     "gravity_force": Quantity("net force of gravity, which is taken out, over the sum of all forces", "1"),

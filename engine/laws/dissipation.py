@@ -7,7 +7,7 @@ from engine.state.particles import Particles
 
 @ti.data_oriented
 class Dissipation:
-    """Specific energy [J/kg] that each particle has turned into heat since the start.
+    """Specific energy [J/kg] that the motion of each particle has lost since the start.
 
     Args:
         particles: state of the particles.
@@ -17,11 +17,17 @@ class Dissipation:
         self.by_transfer = particles.require("transfer_heat")
         self.by_plasticity = particles.require("plastic_heat")
         self.by_viscosity = particles.require("viscous_heat")
+        self.by_drift = particles.require("affine_loss")
 
     @ti.func
     def transfer(self, p, heat):
         """Add heat [J/kg] of the transfer."""
         self.by_transfer[p] = self.by_transfer[p] + heat  # += would be atomic
+
+    @ti.func
+    def drift(self, p, loss):
+        """Add what the affine motion loses [J/kg] as particles move."""
+        self.by_drift[p] = self.by_drift[p] + loss
 
     @ti.func
     def stress(self, p, plastic, viscous):
@@ -36,6 +42,10 @@ class NoDissipation:
 
     @ti.func
     def transfer(self, p, heat):
+        """Do nothing."""
+
+    @ti.func
+    def drift(self, p, loss):
         """Do nothing."""
 
     @ti.func

@@ -45,6 +45,9 @@ class DissipationLaw(Protocol):
     def transfer(self, p, heat):
         """Add what the transfer took from the motion of particle p [J/kg]."""
 
+    def drift(self, p, loss):
+        """Add what the affine motion of particle p loses as it moves [J/kg]; negative where matter flows together."""
+
     def stress(self, p, plastic, viscous):
         """Add what plastic and viscous flow took from the motion of particle p [J/kg]; called last in the step."""
 

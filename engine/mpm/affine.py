@@ -4,6 +4,9 @@ import taichi as ti
 
 from engine.device.tensors import determinant_increment, identity, norm_squared, symmetric
 
+SMALLEST = 1e-30
+"""Square of a rate [1/s^2] that counts as zero; its cube over that of a real one is finite in single precision."""
+
 
 @ti.func
 def affine_velocity(C, dt, j):
@@ -21,9 +24,8 @@ def affine_velocity(C, dt, j):
     before, after = symmetric(C), symmetric(C @ (identity() + dt * C).inverse())
     J = 1.0 + j
     dilated = J * (1.0 + determinant_increment(dt * C))
-    square, dilation = norm_squared(before), dilated / ti.max(J, 1.0)
-    if dilated > 1.0 and square > 0.0:
-        growth = norm_squared(after) / square
-        if growth**3 * dilation**2 > 1.0:
-            after *= dilation ** (-1.0 / 3.0) / ti.sqrt(growth)
+    dilation = dilated / ti.max(J, 1.0)
+    growth = norm_squared(after) / ti.max(norm_squared(before), SMALLEST)
+    if dilated > 1.0 and growth**3 * dilation**2 > 1.0:
+        after *= dilation ** (-1.0 / 3.0) / ti.sqrt(growth)
     return after + 0.5 * (C - C.transpose())

@@ -79,9 +79,10 @@ class Filtered:
 
     @ti.func
     def lose_affine(self, p, before, after):
-        """Turn what particle p has lost of the energy of its affine motion into heat."""
+        """Account for what particle p has lost of the energy of its affine motion by moving: it is no heat."""
         dx = ti.cast(self.response.dx[None], Real)
-        self.lose(p, 0.5 * SECOND_MOMENT * dx * dx * (norm_squared(before) - norm_squared(after)))
+        loss = 0.5 * SECOND_MOMENT * dx * dx * (norm_squared(before) - norm_squared(after))
+        self.response.constitution.dissipation.drift(p, loss)
 
     @ti.func
     def lose(self, p, heat):

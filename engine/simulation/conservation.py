@@ -31,7 +31,7 @@ class Totals:
         half_step_work: work of stress and gravity in half the next step [J]. Velocities belong half a step before
             positions; this takes kinetic energy to the time of the other energies.
         transfer_heat, plastic_heat, viscous_heat: energy that motion has lost since the start, by cause [J].
-        lost_energy: part of the heat of the transfer that internal energy does not contain [J].
+        lost_energy: what affine motion has lost in free motion, and heat that internal energy does not contain [J].
     """
 
     mass: float
@@ -50,7 +50,7 @@ class Totals:
 
     @property
     def total_energy(self) -> float:
-        """Sum of kinetic, affine, internal and gravitational energy at one time, and what the transfer lost [J]."""
+        """Sum of kinetic, affine, internal and gravitational energy at one time, and what was lost [J]."""
         kinetic = self.kinetic_energy + self.affine_kinetic_energy + self.half_step_work
         return kinetic + self.internal_energy + self.gravitational_energy + self.lost_energy
 
@@ -89,7 +89,7 @@ def totals(
         transfer_heat=transfer,
         plastic_heat=plastic,
         viscous_heat=viscous,
-        lost_energy=0.0 if takes_heat else transfer,
+        lost_energy=float(np.sum(m * state["affine_loss"])) + (0.0 if takes_heat else transfer),
     )
 
 

@@ -30,6 +30,9 @@ SPEED_FACTOR = 10.0
 ENERGY_CHANGE = 1e-3
 """Largest change of the total energy in the measure of `energy_growth` [-]; its largest loss is 1 if it may fall."""
 
+ENERGY_PARTICLES = 1000
+"""Particles below which the bound grows as the error does, as dx^2."""
+
 LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
 """Largest change of the total momentum in units of mass times the scene's speeds [-]."""
 
@@ -112,9 +115,10 @@ class Guard:
 
     def _check_energy(self, row: Row, time: float) -> None:
         growth = energy_growth(self.scene, row, self.start)
-        least = -1.0 if dissipates(self.scene) else -ENERGY_CHANGE
-        if keeps_energy(self.scene) and not least <= growth <= ENERGY_CHANGE:
-            allowed = f"between {least:g} and {ENERGY_CHANGE:g}"
+        most = ENERGY_CHANGE * max(1.0, ENERGY_PARTICLES / self.scene.particles) ** (2.0 / 3.0)
+        least = -1.0 if dissipates(self.scene) else -most
+        if keeps_energy(self.scene) and not least <= growth <= most:
+            allowed = f"between {least:.3g} and {most:.3g}"
             quantity = "growth of total energy, as a fraction of all energies"
             raise stop(quantity, growth, allowed, time, advice=SMALLER_STEPS)
 

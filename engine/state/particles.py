@@ -27,6 +27,7 @@ FIELD_TYPES = {
     "transfer_heat": Real,
     "plastic_heat": Real,
     "viscous_heat": Real,
+    "affine_loss": Real,
     "damage_root": Real,
     "acceleration": vec3,
 }
@@ -59,6 +60,7 @@ class Particles:
         b_minus_I: b - I [-], six components, with the isochoric left Cauchy-Green tensor b of the elastic strain.
         E: specific internal energy [J/kg].
         transfer_heat, plastic_heat, viscous_heat: specific energy that motion has lost since the start [J/kg].
+        affine_loss: specific energy that the affine motion has lost in free motion since the start [J/kg].
         damage_root: cube root of the damage [-].
         acceleration: by self-gravity [m/s^2].
         index: number in the scene of the particle at each index of the device.
