@@ -55,6 +55,7 @@ class Guard:
         speed: largest speed [m/s].
         compression: largest rho/rho0 [-].
         momentum: scale of the total momentum [kg m/s].
+        energy: largest change of the total energy [-].
         shortest_step: shortest time step [s].
     """
 
@@ -63,6 +64,7 @@ class Guard:
         scale, materials = speed_scale(scene, start), set(scene.materials)
         self.speed = SPEED_FACTOR * scale
         self.compression = max(compression_limit(material, 0.5 * self.speed**2) for material in materials)
+        self.energy = ENERGY_CHANGE * max(1.0, ENERGY_PARTICLES / scene.particles) ** (2.0 / 3.0)
         self.momentum = float(start["mass"]) * (scale + max(material.longitudinal_speed for material in materials))
 
     def check(self, row: Row, state: Arrays) -> None:
@@ -115,10 +117,9 @@ class Guard:
 
     def _check_energy(self, row: Row, time: float) -> None:
         growth = energy_growth(self.scene, row, self.start)
-        most = ENERGY_CHANGE * max(1.0, ENERGY_PARTICLES / self.scene.particles) ** (2.0 / 3.0)
-        least = -1.0 if dissipates(self.scene) else -most
-        if keeps_energy(self.scene) and not least <= growth <= most:
-            allowed = f"between {least:.3g} and {most:.3g}"
+        least = -1.0 if dissipates(self.scene) else -self.energy
+        if keeps_energy(self.scene) and not least <= growth <= self.energy:
+            allowed = f"between {least:.3g} and {self.energy:.3g}"
             quantity = "growth of total energy, as a fraction of all energies"
             raise stop(quantity, growth, allowed, time, advice=SMALLER_STEPS)
 

@@ -1,13 +1,14 @@
 """Largest stable time step of the linear scheme: theory, and the engine's own by bisection.
 
-Elastic waves u on a periodic block of equal particles. With the operators of section 1 of engine/physics.md (T takes
-velocities from the grid to particles and back, D gives velocity gradients of particles from the grid) a step is
+Elastic waves on a periodic block of equal particles. With the operators of section 1 of engine/physics.md (T takes
+velocities from the grid to particles and back, D gives velocity gradients of particles from the grid) the part a of
+the motion that forces f over mass have set, q = gather(a), changes in a step by
 
-    v' = T v - dt f,    f' = f + dt K v',    K = M^-1 sum_p V D^T (lambda tr + 2 mu sym) D,
+    a' = a - dt f,    f' = f + dt K T a',    a'' = (1 - kappa (1 - T)^2) a',
 
-f being the forces of stress over mass. For a wave of one wave number the eigenvalues z obey
-z^2 - (1 + T - dt^2 K) z + T = 0, so both stay within the unit circle if and only if dt^2 K <= 2 (1 + T). Without the
-damping of the transfer, T = 1, this is dt <= 2/omega.
+K = M^-1 sum_p V D^T (lambda tr + 2 mu sym) D. For a wave of one wave number the eigenvalues z obey
+z^2 - (1 + phi - dt^2 K T) z + phi = 0 with phi = 1 - kappa (1 - T)^2, so both stay within the unit circle if and only
+if dt^2 K T <= 2 (1 + phi). Without the filter, phi = 1, this is dt <= 2/omega.
 """
 
 from collections.abc import Callable
@@ -120,8 +121,9 @@ class Block:
 
 def spectral_radius(T: Array, K: Array, courant: float) -> float:
     """Return the largest growth of any wave in a step of c dt/dx: the spectral radius of its matrix."""
-    size, dt = len(K), courant
-    step = np.block([[T, -dt * np.eye(size)], [dt * K @ T, np.eye(size) - dt**2 * K]])
+    unit, dt = np.eye(len(K)), courant
+    kept = unit - min(1.0, dt / Numerics().filter_time) * (unit - T) @ (unit - T)
+    step = np.block([[kept, -dt * kept], [dt * K @ T, unit - dt**2 * K @ T]])
     return float(np.abs(np.linalg.eigvals(step)).max())
 
 

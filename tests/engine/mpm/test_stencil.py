@@ -6,7 +6,7 @@ import taichi as ti
 
 from engine.device.backend import vec4
 from engine.mpm.spline import spline_weights
-from engine.mpm.stencil import COPY, MARGIN, TILE, Stencil
+from engine.mpm.stencil import COPY, TILE, Stencil, within_margin
 from engine.simulation.simulation import Simulation
 from tests.helpers.device import Array, worst
 from tests.helpers.scenes import body, scene, started
@@ -30,7 +30,8 @@ class Probe:
     @ti.kernel
     def check_margin(self):
         for p in self.within:
-            self.within[p] = self.stencil.within_margin(p)
+            x = self.stencil.particles.x[p] / self.stencil.dx[None]
+            self.within[p] = within_margin(x, self.stencil.particles.origin[p])
 
     @ti.kernel
     def set_linear_field(self, slope: ti.types.matrix(3, 3, ti.f64), offset: ti.types.vector(3, ti.f64)):
@@ -72,7 +73,9 @@ def test_scattering_keeps_mass_and_momentum():
     v = np.random.default_rng(2).normal(size=(200, 3))
     simulation.start(v=v, C=1e-4 * np.random.default_rng(3).normal(size=(200, 3, 3)))
     simulation.clock.pause_time[None] = 1.0
-    simulation.transfer.particles_to_grid()
+    simulation.transfer.begin()
+    projection = simulation.transfer.stages[2]
+    projection.particles_to_grid()
     mass = simulation.particles.read("mass")["mass"]
     expected = np.array([*(mass[:, None] * v).sum(axis=0), mass.sum()])
     assert worst(node_sums(simulation)[None], expected[None], mass.sum()) < 1e-14
@@ -89,8 +92,9 @@ def margin_after(shift: Array) -> Array:
 
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_a_particle_may_move_by_the_margin_in_any_direction_and_by_no_whole_block(axis, sign):
+def test_a_particle_may_move_by_half_a_cell_in_any_direction_and_by_no_whole_block(axis, sign):
+    """A half of the margin is kept for the motion within a step."""
     step = np.zeros(3)
     step[axis] = sign
-    assert margin_after(MARGIN * step).all()
+    assert margin_after(0.5 * step).all()
     assert not margin_after(5.0 * step).any()

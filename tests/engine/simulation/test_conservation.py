@@ -18,6 +18,10 @@ def pair() -> Arrays:
         "C": np.array([SPIN, np.zeros((3, 3))]),
         "E": np.array([10.0, 20.0]),
         "mass": np.array([3.0, 1.0]),
+        "transfer_heat": np.array([1.0, 2.0]),
+        "plastic_heat": np.array([0.5, 0.0]),
+        "viscous_heat": np.array([0.0, 4.0]),
+        "affine_loss": np.array([2.0, 3.0]),
     }
 
 
@@ -30,7 +34,14 @@ def test_totals_of_two_particles() -> None:
     assert found.kinetic_energy == pytest.approx(0.5 * 3.0 * 4.0 + 0.5 * 17.0)
     assert found.affine_kinetic_energy == pytest.approx(0.5 * 3.0 * 8.0)
     assert (found.internal_energy, found.elastic_energy) == (50.0, 3.0)
-    assert found.total_energy == pytest.approx(14.5 + 12.0 + 50.0 - 7.0)
+    assert (found.transfer_heat, found.plastic_heat, found.viscous_heat) == (5.0, 1.5, 4.0)
+    assert found.lost_energy == 9.0
+    assert found.total_energy == pytest.approx(14.5 + 12.0 + 0.5 + 50.0 - 7.0 + 9.0)
+
+
+def test_heat_of_the_transfer_that_is_kept_out_of_internal_energy_is_lost_in_sight() -> None:
+    found = totals(pair(), 1.0, np.zeros(2), 0.0, 0.0, takes_heat=False)
+    assert found.lost_energy == 9.0 + 5.0
 
 
 def test_a_row_has_the_totals_their_sum_and_what_is_added() -> None:

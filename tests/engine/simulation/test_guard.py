@@ -19,7 +19,7 @@ from engine.scene.collision import Collision
 from engine.scene.scene import Physics, Scene, Wall
 from engine.simulation.bounds import energy_growth, speed_scale
 from engine.simulation.conservation import Row, as_row, totals
-from engine.simulation.guard import ENERGY_GROWTH, LARGEST_DRIFT, SPEED_FACTOR, STEPS_FACTOR, Guard
+from engine.simulation.guard import ENERGY_CHANGE, LARGEST_DRIFT, SPEED_FACTOR, STEPS_FACTOR, Guard
 from engine.simulation.simulation import Simulation
 from engine.state.particles import Arrays, Particles
 from tests.helpers.jobs import write_job
@@ -43,6 +43,7 @@ def state_of(given: Scene) -> Arrays:
         "j": np.zeros(count),
         "E": np.zeros(count),
         "mass": np.full(count, 3.0),
+        **{name: np.zeros(count) for name in ("transfer_heat", "plastic_heat", "viscous_heat", "affine_loss")},
     }
 
 
@@ -149,23 +150,27 @@ def test_momentum_may_change_by_round_off_only_unless_something_pushes():
         guard_of(free)[0].check(pushed, state)
 
 
-def test_energy_may_be_lost_but_not_won():
-    given = collision()
+@pytest.mark.parametrize(
+    ("transfer", "losses"), [("filtered", [(-1.01, False), (-0.99, True)]), ("apic", [(-50.0, True), (-1e3, False)])]
+)
+def test_energy_is_kept_or_lost_where_the_transfer_may_but_not_won(transfer, losses):
+    """Changes in units of the bound."""
+    given = collision(numerics={"transfer": transfer})
     guard, state = guard_of(given)
     row = row_of(state)
     kinetic = float(row["kinetic_energy"])
-    for change, passes in (
-        (-1.01, False),
-        (-0.99, True),
-        (0.99 * ENERGY_GROWTH, True),
-        (1.01 * ENERGY_GROWTH, False),
-    ):
-        now = {**row, "total_energy": row["total_energy"] + change * kinetic}
-        assert energy_growth(given, now, row) == pytest.approx(change, rel=1e-6)
+    for change, passes in ((0.99, True), (1.01, False), *losses):
+        now = {**row, "total_energy": row["total_energy"] + change * guard.energy * kinetic}
+        assert energy_growth(given, now, row) == pytest.approx(change * guard.energy, rel=1e-6)
         if passes:
             guard.check(now, state)
         else:
             assert stopped(guard, state, now).quantity.startswith("growth of total energy")
+
+
+def test_the_bound_of_energy_is_that_of_a_resolved_body_and_wider_for_few_particles():
+    few, many = (guard_of(collision(particles=count))[0].energy for count in (25, 1000))
+    assert many == ENERGY_CHANGE and few == pytest.approx(ENERGY_CHANGE * 20.0 ** (2.0 / 3.0))
 
 
 def test_energy_that_gravity_gives_counts_as_there_from_the_start():
