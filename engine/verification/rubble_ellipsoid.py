@@ -13,14 +13,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
 from engine.arrays import Tensor, Vector
 from engine.constants import G_NEWTON
 
-SLOWEST = 1e-6
+SLOWEST = 1e-8
 """Rate of strain [1/s] below which friction falls in proportion to it: rubble at rest creeps slower than this."""
+
+TOLERANCE = 1e-9
+"""Relative error of one step of the integration."""
 
 
 @dataclass(frozen=True)
@@ -67,20 +71,19 @@ class RubbleEllipsoid:
     rho0: float
     friction: float
 
-    def run(self, motion: Motion, times: Iterable[float], dt: float) -> Iterator[Motion]:
-        """Yield the motion at increasing times [s], from t = 0, by Runge and Kutta's fourth-order method.
+    def run(self, motion: Motion, times: Iterable[float]) -> Iterator[Motion]:
+        """Yield the motion at increasing times [s]; friction of slow strain is stiff, so the integration is implicit.
 
         Args:
             motion: at t = 0.
             times: when to yield it.
-            dt: longest step [s]; rubble at rest needs dt below 1 s, because friction relaxes at 2 pi G rho/SLOWEST.
         """
-        now = 0.0
+        now, dense = 0.0, self.pressure(motion) > 0.0 and np.trace(motion.L) < SLOWEST
         for time in times:
-            steps = int(np.ceil((time - now) / dt - 1e-9))
-            for _ in range(steps):
-                motion = self._step(motion, (time - now) / steps)
-            now = time
+            while now < time:
+                now, motion = self._phase(motion, dense, now, time)
+                if now < time:
+                    dense = not dense and self.pressure(motion) > 0.0
             yield motion
 
     def density(self, motion: Motion) -> float:
@@ -116,6 +119,21 @@ class RubbleEllipsoid:
         B = np.linalg.inv(motion.F @ motion.F.T)
         return np.asarray((np.eye(3) - self.friction * motion.flow) @ B)
 
+    def _phase(self, motion: Motion, dense: bool, now: float, end: float) -> tuple[float, Motion]:
+        """Time and motion when dense matter comes apart, or when dust is dense again, or at the end."""
+
+        def rate(_: float, y: Vector) -> Vector:
+            return self._rate(_motion(y), dense).ravel()
+
+        def change(_: float, y: Vector) -> float:
+            return self.pressure(_motion(y)) if dense else self.rho0 / self.density(_motion(y)) - 1.0
+
+        change.terminal, change.direction = True, -1.0  # type: ignore[attr-defined]
+        start, scale = np.ravel([motion.F, motion.L]), np.repeat([np.abs(motion.F).max(), SLOWEST], 9)
+        path = solve_ivp(rate, (now, end), start, "Radau", events=change, rtol=TOLERANCE, atol=TOLERANCE * scale)
+        now, after = float(path.t[-1]), _motion(path.y[:, -1])
+        return now, self._compact(after) if dense or now < end else after
+
     def _rate(self, motion: Motion, dense: bool) -> Tensor:
         """F' and L' one after the other, shape [2, 3, 3]."""
         rho, L = self.density(motion), motion.L
@@ -124,21 +142,17 @@ class RubbleEllipsoid:
             force += 2.0 * self.pressure(motion) / rho * self._push(motion)
         return np.array([L @ motion.F, force - L @ L])
 
-    def _step(self, motion: Motion, dt: float) -> Motion:
-        dense = self.density(motion) > (1.0 - 1e-9) * self.rho0 and self.pressure(motion) > 0.0
-        y = np.array([motion.F, motion.L])
-        k1 = self._rate(Motion(*y), dense)
-        k2 = self._rate(Motion(*(y + 0.5 * dt * k1)), dense)
-        k3 = self._rate(Motion(*(y + 0.5 * dt * k2)), dense)
-        k4 = self._rate(Motion(*(y + dt * k3)), dense)
-        after = Motion(*(y + dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)))
-        return self._compact(after) if dense or self.density(after) > self.rho0 else after
-
     def _compact(self, motion: Motion) -> Motion:
         """The motion at density rho0, its tr L taken away by an impulse of pressure and friction."""
         push = self._push(motion)
         F = motion.F * (self.density(motion) / self.rho0) ** (1.0 / 3.0)
         return Motion(F, motion.L - np.trace(motion.L) / np.trace(push) * push)
+
+
+def _motion(y: Vector) -> Motion:
+    """The motion that 18 numbers are."""
+    F, L = y.reshape(2, 3, 3)
+    return Motion(F, L)
 
 
 def gravity_tensor(F: Tensor) -> Tensor:
