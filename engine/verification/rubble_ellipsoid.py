@@ -1,7 +1,7 @@
 """A homogeneous ellipsoid of incompressible rubble under its own gravity, which keeps a linear velocity field.
 
 Positions are x = F X with |X| <= 1, velocities v = L x. With B = (F F^T)^-1 the pressure P = P0 (1 - x.Bx) vanishes at
-the surface, and friction s = mu P n opposes the rate of strain e = dev sym L along n = e/sqrt(e:e/2), so sqrt(J2) = mu P.
+the surface, and friction s = mu P n, sqrt(J2) = mu P, has the direction n = e/sqrt(e:e/2) of strain, e = dev sym L.
 Gravity is -2 pi G rho A x (Chandrasekhar 1969, chapter 3). All three are linear in x, and so is the acceleration:
 
     L' + L^2 = (2 P0/rho) (I - mu n) B - 2 pi G rho A,    F' = L F,    P0 from tr L' = 0.
@@ -156,7 +156,9 @@ def _motion(y: Vector) -> Motion:
 
 
 def gravity_tensor(F: Tensor) -> Tensor:
-    """Return A [-] of the gravity -2 pi G rho A x inside an ellipsoid, A_i = (2/3) abc R_D(a_j^2, a_k^2, a_i^2), tr A = 2.
+    """Return A [-] of the gravity -2 pi G rho A x inside an ellipsoid, shape [3, 3].
+
+    Its principal values are (2/3) abc R_D(a_j^2, a_k^2, a_i^2), with Carlson's R_D; their sum is 2.
 
     Args:
         F: map of the unit sphere to the ellipsoid [m], shape [3, 3].
@@ -166,10 +168,10 @@ def gravity_tensor(F: Tensor) -> Tensor:
 
 
 def static_ratio(a: float, b: float, c: float) -> float:
-    """Return the sqrt(J2)/P that an ellipsoid at rest needs, the same everywhere in it (Holsapple 2001, Icarus 154, 432).
+    """Return the sqrt(J2)/P that an ellipsoid needs at rest, everywhere the same (Holsapple 2001, Icarus 154, 432).
 
-    Balance is mu n_i = 1 - 3 A_i a_i^2/(sum of A_j a_j^2). Every stress that balances gravity has the same mean over the
-    volume, and strength is a convex cone: rubble of less friction cannot rest.
+    Every stress that balances gravity has the same mean over the volume, and the stresses that friction bears are a
+    convex cone: rubble of less friction cannot rest.
 
     Args:
         a, b, c: axes, in any unit.
@@ -178,7 +180,7 @@ def static_ratio(a: float, b: float, c: float) -> float:
 
 
 def static_stress(F: Tensor) -> Tensor:
-    """Return the deviatoric stress over P [-] of an ellipsoid at rest, shape [3, 3].
+    """Return the deviatoric stress over P [-] of an ellipsoid at rest, 1 - 3 A_i a_i^2/(sum of A_j a_j^2).
 
     Args:
         F: map of the unit sphere to the ellipsoid [m], shape [3, 3].

@@ -19,7 +19,7 @@ RADIUS = 50e3
 
 @dataclass(frozen=True)
 class Fallback:
-    """Rubble with v = H r below escape: dust that turns at a known radius and is back at a known time, then rests dense.
+    """Rubble with v = H r below escape: dust that turns at a known radius, is back at a known time, and rests dense.
 
     As in the collapse of a sphere without pressure, r/R = s cos^2 b at (b + sin(2b)/2) (s^3 R^3/(2 G M))^(1/2) before
     and after it turns at s R. Rubble that is back falls together at its speed of departure, which friction takes away.
