@@ -173,7 +173,7 @@ def flat(ratio: float, particles: int, friction: float = 0.5) -> Lens:
 
 def _shape(a: float, b: float, c: float) -> Tensor:
     """Map of the unit sphere to an ellipsoid of semi-axes in these proportions and the volume of the sphere [m]."""
-    return np.diag([a, b, c]) * RADIUS / (a * b * c) ** (1.0 / 3.0)
+    return np.asarray(np.diag([a, b, c]) * RADIUS / (a * b * c) ** (1.0 / 3.0))
 
 
 def _best_map(before: Vectors, after: Vectors) -> Tensor:

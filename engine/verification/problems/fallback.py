@@ -1,7 +1,6 @@
 """A sphere of rubble thrown apart that falls back under its own gravity (engine/physics.md, sections 1, 4 and 7)."""
 
 from dataclasses import dataclass
-from math import inf
 
 import numpy as np
 
@@ -23,6 +22,10 @@ class Fallback:
 
     As in the collapse of a sphere without pressure, r/R = s cos^2 b at (b + sin(2b)/2) (s^3 R^3/(2 G M))^(1/2) before
     and after it turns at s R. Rubble that is back falls together at its speed of departure, which friction takes away.
+
+    What is allowed is two to three times what affine transfer showed at 1,000 particles: it turns 3.0 % too far (1.2 %
+    at 4,000, second order in dx), and rests at 0.8 % more volume by its own J and 0.3 % more radius. The energy is
+    conserved if the ledger has what the transfer dissipates; without it 94 % of the kinetic energy vanishes.
 
     Attributes:
         particles: number of particles.
@@ -75,7 +78,7 @@ class Fallback:
             Check.relative("sum of m/rho at rest, over that at the start", "-", float(end.J.mean()), 1.0, 0.02),
             Check.relative("density at rest, median", "kg/m3", DENSITY / float(np.median(end.J)), DENSITY, 0.02),
             Check.relative("angular momentum", "kg m2/s", float(left), float(spin), 1e-4),
-            Check.absolute("total energy lost, over the kinetic energy at the start", "-", lost, 0.0, inf),
+            Check.absolute("total energy lost, over the kinetic energy at the start", "-", lost, 0.0, 0.01),
         ]
 
 

@@ -10,7 +10,6 @@ from engine.verification.harness import Harness
 from engine.verification.problems.bar import Bar
 from engine.verification.problems.column import Column
 from engine.verification.problems.expansion import Expansion
-from engine.verification.problems.fallback import Fallback
 from engine.verification.problems.hugoniot import MURNAGHAN, Hugoniot
 from engine.verification.problems.hydrostatic import Hydrostatic
 from engine.verification.problems.rotation import Rotation
@@ -25,7 +24,6 @@ FAST = [
     Hugoniot(speeds=(500.0,), cells=40, material=MURNAGHAN, name="hugoniot_murnaghan"),
     Bar(rates=(0.1, 1.0)),
     Rubble(particles=100, end_time=400.0),
-    Fallback(),
 ]
 
 
