@@ -11,29 +11,37 @@ class Dissipation:
 
     Args:
         particles: state of the particles.
+        by_transfer, by_plasticity, by_viscosity: whether the scene has this cause.
     """
 
-    def __init__(self, particles: Particles) -> None:
-        self.by_transfer = particles.require("transfer_heat")
-        self.by_plasticity = particles.require("plastic_heat")
-        self.by_viscosity = particles.require("viscous_heat")
-        self.by_drift = particles.require("affine_loss")
+    def __init__(self, particles: Particles, by_transfer: bool, by_plasticity: bool, by_viscosity: bool) -> None:
+        self.by_transfer, self.by_plasticity, self.by_viscosity = by_transfer, by_plasticity, by_viscosity
+        if by_transfer:
+            self.transfer_heat, self.affine_loss = particles.require("transfer_heat"), particles.require("affine_loss")
+        if by_plasticity:
+            self.plastic_heat = particles.require("plastic_heat")
+        if by_viscosity:
+            self.viscous_heat = particles.require("viscous_heat")
 
     @ti.func
     def transfer(self, p, heat):
         """Add heat [J/kg] of the transfer."""
-        self.by_transfer[p] = self.by_transfer[p] + heat  # += would be atomic
+        if ti.static(self.by_transfer):
+            self.transfer_heat[p] = self.transfer_heat[p] + heat  # += would be atomic
 
     @ti.func
     def drift(self, p, loss):
         """Add what the affine motion loses [J/kg] as particles move."""
-        self.by_drift[p] = self.by_drift[p] + loss
+        if ti.static(self.by_transfer):
+            self.affine_loss[p] = self.affine_loss[p] + loss
 
     @ti.func
     def stress(self, p, plastic, viscous):
         """Add heat [J/kg] of plastic and of viscous flow."""
-        self.by_plasticity[p] = self.by_plasticity[p] + plastic
-        self.by_viscosity[p] = self.by_viscosity[p] + viscous
+        if ti.static(self.by_plasticity):
+            self.plastic_heat[p] = self.plastic_heat[p] + plastic
+        if ti.static(self.by_viscosity):
+            self.viscous_heat[p] = self.viscous_heat[p] + viscous
 
 
 @ti.data_oriented

@@ -13,7 +13,7 @@ from engine.laws.damage import Damage, Intact
 from engine.laws.dissipation import Dissipation, NoDissipation
 from engine.laws.energy import InternalEnergy, NoInternalEnergy
 from engine.laws.fracture import Fracture, Unbreakable
-from engine.laws.interfaces import DamageLaw, EquationOfStateLaw, ShearLaw
+from engine.laws.interfaces import DamageLaw, DissipationLaw, EquationOfStateLaw, ShearLaw
 from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
@@ -41,7 +41,7 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
         particles,
         _equation_of_state(scene),
         InternalEnergy(particles, scene.numerics.transfer_heat) if physics.energy else NoInternalEnergy(),
-        Dissipation(particles) if physics.energy else NoDissipation(),
+        _dissipation(scene, particles),
         _shear(scene, particles),
         _damage(scene, particles),
         Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
@@ -87,6 +87,14 @@ def _equation_of_state(scene: Scene) -> EquationOfStateLaw:
     if isinstance(eos, TillotsonParameters):
         return Tillotson(materials) if scene.physics.energy else ColdTillotson(materials)
     return Algebraic(eos.formula, materials)
+
+
+def _dissipation(scene: Scene, particles: Particles) -> DissipationLaw:
+    """Account of what internal energy takes up, by the causes that the scene has, or none."""
+    physics, filtered = scene.physics, scene.numerics.transfer == "filtered"
+    if not physics.energy:
+        return NoDissipation()
+    return Dissipation(particles, filtered, physics.strength, physics.viscosity is not None)
 
 
 def _shear(scene: Scene, particles: Particles) -> ShearLaw:

@@ -8,6 +8,7 @@ import xarray as xr
 
 from engine.job.directory import JobDirectory, Status
 from engine.job.storage import write_dataset, write_json
+from engine.quantities import HEATS
 from engine.scene.collision import Collision
 from engine.scene.scene import scene_in
 
@@ -57,6 +58,7 @@ def history(times: np.ndarray, drift: float = 0.0) -> xr.Dataset:
         "elastic_energy": 1e17 * np.ones(len(times)),
         "dt": 0.4 * np.ones(len(times)),
     }
+    scalar |= {name: np.linspace(0.0, 1.0e20, len(times)) for name in HEATS}
     scalar["total_energy"] = 5.0e21 * (1 + share)
     vector = np.outer(share, [1.0, 0.0, 0.0])
     return xr.Dataset(

@@ -54,9 +54,13 @@ def code(given: Scene, monkeypatch: pytest.MonkeyPatch) -> tuple[Simulation, set
     return simulation, names
 
 
+HEAT = {"transfer_heat", "affine_loss", "plastic_heat", "viscous_heat"}
+"""Particle fields of the account of what becomes heat."""
+
+
 def held(simulation: Simulation) -> set[str]:
-    """Particle quantities that have a field, less those that always do."""
-    return set(simulation.particles.allocated) - set(CORE_FIELDS)
+    """Particle quantities that have a field, less those that always do and those of the account of heat."""
+    return set(simulation.particles.allocated) - set(CORE_FIELDS) - HEAT
 
 
 def field_names(simulation: Simulation) -> set[str]:
@@ -107,7 +111,9 @@ def test_an_elastic_column_pays_for_elasticity_alone(monkeypatch):
     simulation, names = code(StandingWave(8).scene, monkeypatch)
     assert held(simulation) == {"b_minus_I", "E"}
     owners = {part.name for part in parts_of(simulation) if part.fields}
-    assert owners == {"particles", "clock", "stencil", "transfer", "eos", "energy", "shear"}
+    heat = set(simulation.particles.allocated) & HEAT
+    assert heat == {"transfer_heat", "affine_loss"}
+    assert {"particles", "clock", "stencil", "scheme", "eos", "energy", "shear"} <= owners
     assert not [part for part in PARTS if part not in ("energy", "shear") and runs(part, names)]
 
 
