@@ -101,7 +101,8 @@ class Kick:
     name = "kick"
 
     def __init__(self, scheme: Filtered) -> None:
-        self.scheme, self.nodes = scheme, NoWalls()
+        self.scheme = scheme
+        self.nodes: Boundary = NoWalls()
 
     @ti.func
     def give(self, p, dx):
@@ -177,7 +178,8 @@ class WallContact:
     name = "wall"
 
     def __init__(self, scheme: Filtered) -> None:
-        self.scheme, self.nodes = scheme, Change(scheme.response.walls)
+        self.scheme = scheme
+        self.nodes: Boundary = Change(scheme.response.walls)
 
     @ti.func
     def give(self, p, dx):
@@ -242,7 +244,8 @@ class Correction:
     name = "correction"
 
     def __init__(self, scheme: Filtered) -> None:
-        self.scheme, self.nodes = scheme, NoWalls()
+        self.scheme = scheme
+        self.nodes: Boundary = NoWalls()
 
     @ti.func
     def give(self, p, dx):

@@ -17,7 +17,7 @@ class Part:
     """One part of a simulation.
 
     Attributes:
-        name: attribute of the object that owns it.
+        name: attribute of the object that owns it; in a tuple its own, or that of its class.
         content: the part itself.
         fields: its fields by name, less those that belong to a part inside it or beside it.
         kernels: names of its kernels.
@@ -45,6 +45,11 @@ def parts_of(simulation: Simulation) -> list[Part]:
     return parts[::-1]
 
 
+def name_in_tuple(content: object) -> str:
+    """Return the name of a part in a tuple, as of a stage of a step."""
+    return str(getattr(content, "name", type(content).__name__.lower()))
+
+
 def own_fields(content: object) -> dict[str, Field]:
     """Return the fields among the attributes of an object, by name."""
     return {name: value for name, value in vars(content).items() if isinstance(value, Field)}
@@ -70,9 +75,19 @@ def _walk(simulation: Simulation) -> Iterator[tuple[str, object]]:
     while queue:
         name, content = queue.pop(0)
         yield name, content
-        inner = [(key, value) for key, value in vars(content).items() if _is_part(value) and id(value) not in seen]
-        seen.update(id(value) for _, value in inner)
-        queue += inner
+        for key, value in _attributes(content):
+            if _is_part(value) and id(value) not in seen:
+                seen.add(id(value))
+                queue.append((key, value))
+
+
+def _attributes(content: object) -> Iterator[tuple[str, object]]:
+    """Attributes of an object, and in place of a tuple its members."""
+    for key, value in vars(content).items():
+        if isinstance(value, tuple):
+            yield from ((name_in_tuple(member), member) for member in value)
+        else:
+            yield key, value
 
 
 def _is_part(value: object) -> bool:

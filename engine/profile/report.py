@@ -22,7 +22,7 @@ def report(result: Measurement) -> RenderableType:
     return Group(
         Text(heading),
         _table(result),
-        Text("Parts without kernels run inside those of 'transfer'. Memory is what is allocated."),
+        Text("Parts without kernels run inside those of the stages of a step. Memory is what is allocated."),
         Text(f"Left out, so neither allocated, nor compiled, nor run: {left_out or 'nothing'}."),
     )
 

@@ -19,7 +19,7 @@ from engine.device import backend
 from engine.profile.parts import allocated_bytes, parts_of
 from engine.scene.scene import Gravity, Scene, ViscosityCoefficients, Wall
 from engine.simulation.simulation import Simulation
-from tests.benchmarks.contact import in_contact, take_step
+from tests.benchmarks.contact import continued, in_contact, take_step
 from tests.benchmarks.host import commit, host
 from tests.benchmarks.scene import collision
 from tests.benchmarks.stopwatch import Stopwatch
@@ -95,14 +95,9 @@ def take_turns(simulations: dict[str, Simulation], rounds: int) -> dict[str, Sto
 
 
 def variant(whole: Simulation, changes: Results) -> Simulation:
-    """The scene with other physics, in the state of the whole one as far as its parts hold it."""
+    """The scene with other physics, in the state of the whole one."""
     physics = whole.scene.physics.model_copy(update=changes)
-    result = Simulation(whole.scene.model_copy(update={"physics": physics}))
-    now = whole.clock_state()
-    clock_state = {**result.clock_state(), "rate": now["rate"], "time": now["time"]}
-    result.restore(whole.particles.read(*result.particles.allocated), clock_state)
-    result.clock.pause_time[None] = whole.scene.end_time
-    return result
+    return continued(whole, whole.scene.model_copy(update={"physics": physics}))
 
 
 def evaluation(whole: Simulation) -> float:
@@ -130,7 +125,7 @@ def change(per_step: Results, name: str, simulation: Simulation, whole: Simulati
 
 def memory(simulation: Simulation) -> float:
     """Bytes per particle of all fields but the grid's, which depend on where particles are."""
-    fields = [field for part in parts_of(simulation) if part.name != "transfer" for field in part.fields.values()]
+    fields = [field for part in parts_of(simulation) if part.name != "stencil" for field in part.fields.values()]
     return sum(map(allocated_bytes, fields)) / simulation.particles.count
 
 

@@ -14,6 +14,16 @@ def in_contact(scene: Scene, time: float) -> Simulation:
     return simulation
 
 
+def continued(simulation: Simulation, scene: Scene) -> Simulation:
+    """Another scene with the same particles, in the state of a simulation as far as its parts hold it."""
+    result = Simulation(scene)
+    now = simulation.clock_state()
+    clock_state = {**result.clock_state(), "rate": now["rate"], "time": now["time"]}
+    result.restore(simulation.particles.read(*result.particles.allocated), clock_state)
+    result.clock.pause_time[None] = scene.end_time
+    return result
+
+
 def make_ready(simulation: Simulation) -> bool:
     """Let the next step run; returns whether particles had to be sorted into new blocks for it."""
     moved_out = bool(simulation.clock.moved_out[None])

@@ -1,7 +1,7 @@
 """The usual MPM step, to compare with: one dense box of nodes, cleared each step, and atomic adds in particle order.
 
-Equations are the engine's (engine/physics.md, section 1); the grid, the order of particles and the way momentum gets
-there are not. A particle that shares no node with another is nothing special here.
+Equations are those of `engine.mpm.apic` (engine/physics.md, section 1); the grid, the order of particles and the way
+momentum gets there are not. A particle that shares no node with another is nothing special here.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from engine.device.backend import mat3, vec3, vec4
 from engine.device.tensors import unpack
-from engine.mpm.apic import affine_velocity
+from engine.mpm.affine import affine_velocity
 from engine.mpm.spline import spline_weights
 from engine.state.particles import Particles
 

@@ -1,25 +1,38 @@
 """Memory of a simulation: what its particles and grid occupy, and what a step moves at least."""
 
+from engine.device.taichi_internals import StructField
 from engine.mpm.stencil import COPY
-from engine.profile.parts import allocated_bytes, entry_bytes, own_fields
+from engine.profile.parts import allocated_bytes, entry_bytes, name_in_tuple, own_fields
 from engine.simulation.simulation import Simulation
 
-PARTICLES_TO_GRID = ("x", "v", "C", "tau", "acceleration", "mass", "body")
-"""Particle fields read."""
-GRID_TO_PARTICLES = ("x", "origin", "mass", "body", "acceleration", "b_minus_I", "j", "E", "damage_root", "tau")
-UPDATED = ("x", "v", "C", "b_minus_I", "j", "E", "damage_root", "tau")
-"""Particle fields written."""
-GRID_PASSES = 4
-"""Times that every node copy crosses the caches: filled, summed, written back, read; clearing stays in cache."""
+TOUCHED = {
+    "kick": ("x tau acceleration mass body", "x mass v C", "v C kicked"),
+    "drift": ("x v C j E origin transfer_heat", "x C E transfer_heat"),
+    "projection": (
+        "x mass v C",
+        "x mass v C body acceleration b_minus_I j E damage_root tau plastic_heat viscous_heat",
+        "remainder b_minus_I j E damage_root tau plastic_heat viscous_heat",
+    ),
+    "correction": ("x mass remainder", "x mass remainder kicked v C E transfer_heat", "v C E transfer_heat"),
+}
+"""Fields of a particle that a stage reads to the grid and from the grid, and those that it writes."""
+GRID_TRIPS = 4
+"""Times that every node copy crosses the caches in a pass: filled, summed, written, read; clearing stays in cache."""
 
 
 def bytes_per_step(simulation: Simulation) -> float:
     """Least traffic of one step with memory, per particle, when nothing stays in cache from kernel to kernel."""
-    particles, stencil = simulation.particles, simulation.stencil
-    names = [name for name in (*PARTICLES_TO_GRID, *GRID_TO_PARTICLES, *UPDATED) if name in particles.allocated]
-    state = sum(entry_bytes(getattr(particles, name)) for name in names)
-    copies = int(stencil.block_count[None]) * COPY
-    return state + GRID_PASSES * copies * entry_bytes(stencil.nodes) / particles.count
+    stencil, stages = simulation.stencil, [name_in_tuple(stage) for stage in simulation.transfer.stages]
+    fields = {**own_fields(simulation.particles), **motions(simulation)}
+    names = " ".join(" ".join(TOUCHED[stage]) for stage in stages).split()
+    state = sum(entry_bytes(fields[name]) for name in names if name in fields)
+    copies = sum(stage != "drift" for stage in stages) * int(stencil.block_count[None]) * COPY
+    return state + GRID_TRIPS * copies * entry_bytes(stencil.nodes) / simulation.particles.count
+
+
+def motions(simulation: Simulation) -> dict[str, StructField]:
+    """Fields in which the transfer scheme keeps motions of every particle from stage to stage."""
+    return {name: field for name, field in own_fields(simulation.scheme).items() if isinstance(field, StructField)}
 
 
 def allocated(simulation: Simulation) -> dict[str, float]:
@@ -29,7 +42,7 @@ def allocated(simulation: Simulation) -> dict[str, float]:
     """
     particles, stencil, fracture = simulation.particles, simulation.stencil, simulation.constitution.damage.fracture
     count = particles.count
-    per_particle = [*own_fields(particles).values(), stencil.owner]
+    per_particle = [*own_fields(particles).values(), *motions(simulation).values(), stencil.owner]
     flaws = [fracture.first, fracture.strain]
     used = sum(map(entry_bytes, [*per_particle, fracture.first])) * count
     used += int(fracture.first[count]) * entry_bytes(fracture.strain)

@@ -1,4 +1,7 @@
-"""Time of the usual way over the engine's, in turns within one process, so that other load disturbs both alike."""
+"""Time of the usual way, and of the default transfer, over that of the engine's APIC transfer.
+
+All take turns within one process, so that other load disturbs them alike.
+"""
 
 from typing import Any
 
@@ -15,7 +18,7 @@ from tests.benchmarks.baseline import (
     step_together,
 )
 from tests.benchmarks.child import answer
-from tests.benchmarks.contact import in_contact, take_step
+from tests.benchmarks.contact import continued, in_contact, take_step
 from tests.benchmarks.dense import DenseTransfer
 from tests.benchmarks.scene import collision
 from tests.benchmarks.stopwatch import Stopwatch
@@ -30,13 +33,14 @@ TOLERANCE = {"baseline": ROUND_OFF_SVD, "dense_grid_only": ROUND_OFF}
 def measure(particles: int, threads: int, contact: float, rounds: int) -> dict[str, Any]:
     """Agreement after some steps, then times and their ratios over `rounds` turns."""
     backend.start(threads=threads)
-    simulation = in_contact(collision(particles), contact)
+    simulation = in_contact(collision(particles, transfer="apic"), contact)
     others = {"baseline": baseline(simulation), "dense_grid_only": dense_grid_only(simulation)}
     step_together(simulation, list(others.values()), AGREEMENT_STEPS)
     found = {name: differences(simulation, other) for name, other in others.items()}
     for name, difference in found.items():
         assert max(difference.values()) < TOLERANCE[name], f"{name} differs from the engine: {difference}"
-    watches = take_turns(simulation, others, rounds)
+    default = continued(simulation, collision(particles))
+    watches = take_turns(simulation, default, others, rounds)
     engine = watches.pop("engine")
     return {
         "engine": per_step(engine),
@@ -46,10 +50,16 @@ def measure(particles: int, threads: int, contact: float, rounds: int) -> dict[s
     }
 
 
-def take_turns(simulation: Simulation, others: dict[str, DenseTransfer], rounds: int) -> dict[str, Stopwatch]:
-    """Times of batches of the same time steps, one after the other."""
-    watches = {name: Stopwatch() for name in ("engine", *others)}
+def take_turns(
+    simulation: Simulation, default: Simulation, others: dict[str, DenseTransfer], rounds: int
+) -> dict[str, Stopwatch]:
+    """Times of batches of steps, one after the other; the others take those of the simulation."""
+    watches = {name: Stopwatch() for name in ("engine", "default", *others)}
+    take_step(default)
     for _ in range(rounds):
+        with watches["default"].lap():
+            for _ in range(BATCH):
+                take_step(default)
         with watches["engine"].lap():
             steps = [take_step(simulation) for _ in range(BATCH)]
         for name, other in others.items():

@@ -1,11 +1,13 @@
 """The scene that is timed: a collision of two bodies, from shortly before contact."""
 
+from typing import Any
+
 from engine.device.options import chosen
 from engine.scene.collision import Collision
 from engine.scene.scene import Gravity, Numerics, Scene
 
 
-def collision(particles: int, gravity: Gravity | None = None, start_separation: float = 1.05) -> Scene:
+def collision(particles: int, gravity: Gravity | None = None, start_separation: float = 1.05, **numerics: Any) -> Scene:
     """A (200 m/s, 15 deg) collision of two bodies of `particles` each, with all physics but, unless asked, gravity."""
     return Collision(
         velocity=200.0,
@@ -14,5 +16,5 @@ def collision(particles: int, gravity: Gravity | None = None, start_separation: 
         gravity=gravity,
         start_separation=start_separation,
         end_time=1e5,
-        numerics=Numerics(precision=chosen()),
+        numerics=Numerics(precision=chosen(), **numerics),
     ).scene()

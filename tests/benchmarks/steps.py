@@ -1,9 +1,11 @@
-"""Time of the engine's step and of its kernels, at one size on a number of threads."""
+"""Time of the engine's step and of its stages, at one size on a number of threads."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from engine.device import backend
 from engine.device.backend import Real
+from engine.profile.parts import name_in_tuple
 from engine.scene.scene import Gravity
 from engine.simulation.simulation import Simulation
 from tests.benchmarks.child import answer
@@ -12,7 +14,6 @@ from tests.benchmarks.memory import allocated, bytes_per_step
 from tests.benchmarks.scene import collision
 from tests.benchmarks.stopwatch import Stopwatch, total
 
-PHASES = ("particles_to_grid", "update_grid", "grid_to_particles")
 GRAVITY_CALLS = 3
 
 
@@ -31,7 +32,7 @@ def measure(particles: int, threads: int, contact: float, steps: int) -> dict[st
         "damaged": float((simulation.particles.read("damage_root")["damage_root"] >= 1.0).mean()),
         "steps": steps,
         "step": total(watches).summary(),
-        "phases": {name: watch.summary() for name, watch in zip(PHASES, watches, strict=True)},
+        "phases": phases(simulation, watches),
         "rebuild": {**rebuild.summary(), "count": len(rebuild.wall)},
         "gravity": gravity(particles).summary(),
         "bytes": {**allocated(simulation), "traffic": bytes_per_step(simulation)},
@@ -39,18 +40,33 @@ def measure(particles: int, threads: int, contact: float, steps: int) -> dict[st
 
 
 def time_steps(simulation: Simulation, steps: int) -> tuple[list[Stopwatch], Stopwatch]:
-    """Watches of the kernels of `steps` steps, and of the rebuilding of blocks between them."""
-    watches, rebuild = [Stopwatch() for _ in PHASES], Stopwatch()
+    """Watches of the stages of `steps` steps, and of the rebuilding of blocks between them."""
+    watches, rebuild = [Stopwatch() for _ in stages(simulation)], Stopwatch()
     before = simulation.step
     for _ in range(steps):
         if simulation.clock.moved_out[None]:
             with rebuild.lap():
                 make_ready(simulation)
-        for name, watch in zip(PHASES, watches, strict=True):
+        for (_, run), watch in zip(stages(simulation), watches, strict=True):
             with watch.lap():
-                getattr(simulation.transfer, name)()
+                run()
     assert simulation.step == before + steps, "the clock paused a step that was timed"
     return watches, rebuild
+
+
+def stages(simulation: Simulation) -> list[tuple[str, Callable[[], None]]]:
+    """Names and kernels of the stages of a step, in order."""
+    transfer = simulation.transfer
+    return [("begin", transfer.begin), *((name_in_tuple(stage), stage.run) for stage in transfer.stages)]
+
+
+def phases(simulation: Simulation, watches: Sequence[Stopwatch]) -> dict[str, dict[str, float]]:
+    """Times of the stages by name: the sum of those that occur more than once in a step."""
+    names = [name for name, _ in stages(simulation)]
+    return {
+        name: total([watch for other, watch in zip(names, watches, strict=True) if other == name]).summary()
+        for name in names
+    }
 
 
 def gravity(particles: int) -> Stopwatch:

@@ -6,6 +6,7 @@ import taichi as ti
 
 from engine.device.backend import Real, mat3, vec6
 from engine.device.fields import per_body
+from engine.mpm.filtered import Motion
 from engine.profile.parts import allocated_bytes, own_fields, parts_of
 from tests.helpers.scenes import body, scene, started
 
@@ -26,8 +27,20 @@ def test_every_field_belongs_to_one_part_the_innermost() -> None:
 
 def test_kernels_are_found_also_those_of_a_base_class() -> None:
     parts = {part.name: part for part in parts_of(started(scene(body(), physics={"gravity": {"opening": 0.5}})))}
-    assert set(parts["transfer"].kernels) == {"particles_to_grid", "update_grid", "grid_to_particles"}
     assert set(parts["gravity"].kernels) == {"gather_leaves", "merge_level", "walk_all"}
+
+
+def test_every_stage_of_a_step_is_one_part() -> None:
+    simulation = started(scene(body(), physics={"walls": [{"point": [0.0, 0.0, -1e6]}]}))
+    stages = [part for part in parts_of(simulation) if part.content in simulation.transfer.stages]
+    grid = {"particles_to_grid", "update_grid", "grid_to_particles"}
+    assert [(part.name, set(part.kernels)) for part in stages] == [
+        ("kick", grid),
+        ("wall", grid),
+        ("drift", {"run"}),
+        ("projection", grid),
+        ("correction", grid),
+    ]
 
 
 def test_a_part_that_a_scene_leaves_out_has_neither_fields_nor_kernels() -> None:
@@ -46,6 +59,7 @@ def test_memory_counts_entries_and_components() -> None:
         8 * 6 * 7: vec6.field(shape=7),
         8 * 9: mat3.field(shape=()),
         8 * 2 * 1024: per_body(density=np.ones(3), modulus=np.ones(3)),
+        8 * 12 * 9: Motion.field(shape=9),
     }
     assert [allocated_bytes(field) for field in fields.values()] == list(fields)
 

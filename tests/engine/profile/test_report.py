@@ -33,10 +33,12 @@ def test_a_column_is_explained_without_what_it_leaves_out(tmp_path):
     text = " ".join(result.stdout.split())
     assert "256 particles" in text and "7 steps measured from t = " in text
     assert "nor run: strength, fracture, gravity, viscosity, uniform_gravity, walls." in text
-    # 1024 places for vectors of six numbers; seven runs of each kernel
+    # 1024 places for vectors of six numbers and for motions of twelve; seven runs of each kernel
     assert re.search(r"shear │ Hencky │ b_minus_I │ 48\.0 KiB", text)
+    assert re.search(r"scheme │ Filtered │ kicked, remainder │ 96\.0 KiB each", text)
     for kernel in ("particles_to_grid", "update_grid", "grid_to_particles"):
-        assert re.search(rf"{kernel} │ 7 │ \d+\.\d+ │ \d+\.\d+", text)
+        assert len(re.findall(rf"{kernel} │ 7 │ \d+\.\d+ │ \d+\.\d+", text)) == 3
+    assert re.search(r"drift │ Drift │ │ │ run │ 14 │ \d+\.\d+", text)
     for absent in ("damage_root", "acceleration", "BarnesHut", "Fracture"):
         assert absent not in text
     assert [path.name for path in tmp_path.iterdir()] == ["column.json"]
