@@ -8,7 +8,7 @@ from engine.device.backend import Real, mat3
 from engine.device.taichi_internals import to_numpy_type
 from engine.laws.constitution import Constitution
 from engine.laws.damage import Damage
-from engine.laws.dissipation import Dissipation
+from engine.laws.dissipation import NoDissipation
 from engine.laws.energy import InternalEnergy
 from engine.laws.fracture import Unbreakable
 from engine.laws.interfaces import GrowthLaw, ViscosityLaw
@@ -64,7 +64,7 @@ class MaterialPoint:
             self.particles,
             Tillotson(materials),
             InternalEnergy(self.particles),
-            Dissipation(self.particles),
+            NoDissipation(),
             Hencky(self.particles, Strength(materials) if strength else Unlimited(), materials) if shear else Fluid(),
             Damage(self.particles, fracture or Unbreakable()),
             viscosity or Inviscid(),

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from engine.simulation.initial_conditions import initial_state
-from tests.helpers.dense_grid import affine_velocity
 from tests.helpers.device import Array, traceless, worst
 from tests.helpers.scenes import advance, body, one_step, rubble_collision, scene, started
-
 
 DUST = {"fracture": None, "gravity": None, "shear": False, "strength": False, "energy": False, "sound_speed": 1e-6}
 """So soft that its stress is round-off."""
