@@ -30,8 +30,8 @@ SPEED_FACTOR = 10.0
 ENERGY_CHANGE = 1e-3
 """Largest change of the total energy in the measure of `energy_growth` [-]; its largest loss is 1 if it may fall."""
 
-ENERGY_PARTICLES = 1000
-"""Particles below which the bound grows as the error does, as dx^2."""
+ENERGY_PARTICLES = 5000
+"""Particles below which the bound grows as the error of a collision does, inversely with their number."""
 
 LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
 """Largest change of the total momentum in units of mass times the scene's speeds [-]."""
@@ -64,7 +64,7 @@ class Guard:
         scale, materials = speed_scale(scene, start), set(scene.materials)
         self.speed = SPEED_FACTOR * scale
         self.compression = max(compression_limit(material, 0.5 * self.speed**2) for material in materials)
-        self.energy = ENERGY_CHANGE * max(1.0, ENERGY_PARTICLES / scene.particles) ** (2.0 / 3.0)
+        self.energy = ENERGY_CHANGE * max(1.0, ENERGY_PARTICLES / scene.particles)
         self.momentum = float(start["mass"]) * (scale + max(material.longitudinal_speed for material in materials))
 
     def check(self, row: Row, state: Arrays) -> None:

@@ -151,7 +151,7 @@ def test_momentum_may_change_by_round_off_only_unless_something_pushes():
 
 
 @pytest.mark.parametrize(
-    ("transfer", "losses"), [("filtered", [(-1.01, False), (-0.99, True)]), ("apic", [(-50.0, True), (-1e3, False)])]
+    ("transfer", "losses"), [("filtered", [(-1.01, False), (-0.99, True)]), ("apic", [(-3.9, True), (-4.1, False)])]
 )
 def test_energy_is_kept_or_lost_where_the_transfer_may_but_not_won(transfer, losses):
     """Changes in units of the bound."""
@@ -169,8 +169,8 @@ def test_energy_is_kept_or_lost_where_the_transfer_may_but_not_won(transfer, los
 
 
 def test_the_bound_of_energy_is_that_of_a_resolved_body_and_wider_for_few_particles():
-    few, many = (guard_of(collision(particles=count))[0].energy for count in (25, 1000))
-    assert many == ENERGY_CHANGE and few == pytest.approx(ENERGY_CHANGE * 20.0 ** (2.0 / 3.0))
+    few, many = (guard_of(collision(particles=count))[0].energy for count in (250, 2500))
+    assert many == ENERGY_CHANGE and few == pytest.approx(10.0 * ENERGY_CHANGE)
 
 
 def test_energy_that_gravity_gives_counts_as_there_from_the_start():
