@@ -65,11 +65,12 @@ def forces(state: dict[str, Array], dx: float, dt: float) -> Motion:
 
 
 def affine_velocity(C: Array, dt: float, j: Array) -> Array:
-    """sym(C (I + dt C)^-1), at most as large as |sym C| max(J, 1)^(1/3) allows where matter is dilated, and skew(C)."""
-    transposed, unit = (0, 2, 1), np.eye(3)
-    before, after = (0.5 * (S + S.transpose(transposed)) for S in (C, C @ np.linalg.inv(unit + dt * C)))
-    J, dilated = 1.0 + j, (1.0 + j) * np.linalg.det(unit + dt * C)
-    bound = np.linalg.norm(before, axis=(1, 2)) * (np.maximum(J, 1.0) / np.maximum(dilated, 1e-300)) ** (1.0 / 3.0)
-    size = np.maximum(np.linalg.norm(after, axis=(1, 2)), 1e-300)
-    factor = np.where(dilated > 1.0, np.minimum(1.0, bound / size), 1.0)
-    return np.asarray(factor[:, None, None] * after + 0.5 * (C - C.transpose(transposed)))
+    """sym(C (I + dt C)^-1) + skew(C); where matter is dilated the part of S = sym(C) has at most |S| max(J, 1)^(1/3)."""
+    unit, skew = np.eye(3), 0.5 * (C - C.transpose(0, 2, 1))
+    S, moved = C - skew, C @ np.linalg.inv(unit + dt * C)
+    J, dilated = 1.0 + j, (1.0 + j) * np.linalg.det(unit + dt * S)
+    free = S @ np.linalg.inv(unit + dt * S)
+    bound = np.linalg.norm(S, axis=(1, 2)) * (np.maximum(J, 1.0) / np.maximum(dilated, 1e-300)) ** (1.0 / 3.0)
+    factor = np.minimum(1.0, bound / np.maximum(np.linalg.norm(free, axis=(1, 2)), 1e-300))
+    excess = np.where(dilated > 1.0, 1.0 - factor, 0.0)[:, None, None] * free
+    return np.asarray(0.5 * (moved + moved.transpose(0, 2, 1)) - excess + skew)

@@ -45,17 +45,21 @@ def symmetric(C: Array) -> Array:
 @pytest.mark.parametrize("size", [1e-6, 1e-2, 0.1, 0.3])
 def test_strain_rates_are_those_of_a_linear_flow_and_gain_no_energy_in_dilated_matter(size):
     generator, count = np.random.default_rng(1), 3000
-    C = size * generator.uniform(-1.0, 1.0, (count, 3, 3))
+    skew = size * generator.uniform(-1.0, 1.0, (count, 3, 3))
+    C, skew = size * generator.uniform(-1.0, 1.0, (count, 3, 3)), 0.5 * (skew - skew.transpose(0, 2, 1))
+    C = symmetric(C)
     C[::3] *= np.eye(3)
     j = generator.uniform(-0.8, 5.0, count)
     J = (1.0 + j) * np.linalg.det(np.eye(3) + C)
-    found, expected = after_step(C, 1.0, j), symmetric(exact(C))
+    found, expected = after_step(C, 1.0, j), exact(C)
     before = strain_rate_energy(C, 1.0 + j)
     limited = (J > 1.0) & (strain_rate_energy(expected, J) > before)
     assert limited.any() and (~limited & (J > 1.0)).any() and (J < 1.0).any()
-    assert worst(symmetric(found)[~limited], expected[~limited], size) < 1e-14
+    assert worst(found[~limited], expected[~limited], size) < 1e-14
     assert strain_rate_energy(found, J)[limited] == pytest.approx(before[limited], rel=1e-10)
-    assert worst(found - symmetric(found), C - symmetric(C), size) < 1e-15
+    turning = after_step(C + skew, 1.0, j)
+    assert worst(turning - symmetric(turning), skew, size) < 1e-15
+    assert worst(symmetric(turning) - found, symmetric(exact(C + skew)) - expected, size) < 1e-13
 
 
 @pytest.mark.parametrize(("rate", "j"), [(0.2, 0.0), (0.2, -0.5), (0.2, 7.0), (-0.2, 7.0), (-0.2, 0.0)])
@@ -74,7 +78,7 @@ def test_a_thin_sheet_that_closes_does_not_gain_energy():
     """One layer of rubble has a rate of thinning that no particles' motion carries: it must not run away."""
     rate = -1e-3
     count = 100
-    given = scene(body(particles=count), end_time=4.0 / abs(rate))
+    given = scene(body(particles=count), end_time=4.0 / abs(rate), numerics={"cfl": 0.2})
     generator = np.random.default_rng(1)
     x = 50e3 * generator.uniform(-1.0, 1.0, (count, 3)) * [3.0, 3.0, 0.0]
     C = np.tile(np.diag([0.0, 0.0, rate]), (count, 1, 1))
@@ -83,6 +87,6 @@ def test_a_thin_sheet_that_closes_does_not_gain_energy():
     while not simulation.finished:
         advance(simulation, simulation.step + 100)
         now = simulation.totals()
-        # the layer bounces off its own pressure with a period of six time steps
+        # the layer bounces off its own pressure with a period of thirty time steps
         assert now.affine_kinetic_energy + now.internal_energy <= 16.2 * before.affine_kinetic_energy
         assert now.total_energy == pytest.approx(before.total_energy, rel=0.02)
