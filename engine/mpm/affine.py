@@ -13,8 +13,8 @@ def affine_velocity(C, dt, j):
     """Return the affine velocity [1/s] of matter that has moved freely for dt: sym(C (I + dt C)^-1) + skew(C).
 
     The skew part keeps angular momentum. In dilated matter, J > 1, the part that strain S = sym(C) sets,
-    S (I + dt S)^-1, is scaled so that |S| max(J, 1)^(1/3) never grows: no stress opposes what a particle of debris thinner
-    than a cell remembers of itself.
+    S (I + dt S)^-1, is scaled so that |S| max(J, 1)^(1/3) never grows: no stress opposes what a particle of debris
+    thinner than a cell remembers of itself.
 
     Args:
         C: affine velocity [1/s].

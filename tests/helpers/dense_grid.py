@@ -65,7 +65,7 @@ def forces(state: dict[str, Array], dx: float, dt: float) -> Motion:
 
 
 def affine_velocity(C: Array, dt: float, j: Array) -> Array:
-    """sym(C (I + dt C)^-1) + skew(C); where matter is dilated the part of S = sym(C) has at most |S| max(J, 1)^(1/3)."""
+    """sym(C (I + dt C)^-1) + skew(C), the part of S = sym(C) at most |S| max(J, 1)^(1/3) where matter is dilated."""
     unit, skew = np.eye(3), 0.5 * (C - C.transpose(0, 2, 1))
     S, moved = C - skew, C @ np.linalg.inv(unit + dt * C)
     J, dilated = 1.0 + j, (1.0 + j) * np.linalg.det(unit + dt * S)
