@@ -27,11 +27,8 @@ from engine.state.particles import Arrays, Particles
 SPEED_FACTOR = 10.0
 """Largest speed in units of the scene's [-]: rebounds reach two or three of them, jets a few."""
 
-ENERGY_CHANGE = 1e-3
+ENERGY_CHANGE = 0.05
 """Largest change of the total energy in the measure of `energy_growth` [-]; its largest loss is 1 if it may fall."""
-
-ENERGY_PARTICLES = 5000
-"""Particles below which the bound grows as the error of a collision does, inversely with their number."""
 
 LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
 """Largest change of the total momentum in units of mass times the scene's speeds [-]."""
@@ -55,7 +52,6 @@ class Guard:
         speed: largest speed [m/s].
         compression: largest rho/rho0 [-].
         momentum: scale of the total momentum [kg m/s].
-        energy: largest change of the total energy [-].
         shortest_step: shortest time step [s].
     """
 
@@ -64,7 +60,6 @@ class Guard:
         scale, materials = speed_scale(scene, start), set(scene.materials)
         self.speed = SPEED_FACTOR * scale
         self.compression = max(compression_limit(material, 0.5 * self.speed**2) for material in materials)
-        self.energy = ENERGY_CHANGE * max(1.0, ENERGY_PARTICLES / scene.particles)
         self.momentum = float(start["mass"]) * (scale + max(material.longitudinal_speed for material in materials))
 
     def check(self, row: Row, state: Arrays) -> None:
@@ -117,9 +112,9 @@ class Guard:
 
     def _check_energy(self, row: Row, time: float) -> None:
         growth = energy_growth(self.scene, row, self.start)
-        least = -1.0 if dissipates(self.scene) else -self.energy
-        if keeps_energy(self.scene) and not least <= growth <= self.energy:
-            allowed = f"between {least:.3g} and {self.energy:.3g}"
+        least = -1.0 if dissipates(self.scene) else -ENERGY_CHANGE
+        if keeps_energy(self.scene) and not least <= growth <= ENERGY_CHANGE:
+            allowed = f"between {least:g} and {ENERGY_CHANGE:g}"
             quantity = "growth of total energy, as a fraction of all energies"
             raise stop(quantity, growth, allowed, time, advice=SMALLER_STEPS)
 
