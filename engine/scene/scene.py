@@ -114,7 +114,7 @@ class Numerics(Frozen):
     """Resolution in space and time; the grid is dx = h particles_per_cell^(1/3) (for `f32`: physics.md, section 10)."""
 
     particles_per_cell: Annotated[Positive, key("particles in a cell of the grid", "1")] = 4.0
-    cfl: Annotated[Fraction, key("time step in units of dx/(wave speed + particle speed)", "1")] = 0.9
+    cfl: Annotated[Fraction, key("time step in units of dx/(wave speed + particle speed)", "1")] = 0.5
     transfer: Annotated[
         Literal["filtered", "apic"], key("transfer between particles and grid; `apic` is there to compare with")
     ] = "filtered"

@@ -5,16 +5,13 @@ from engine.verification.problems.bar import Bar
 from engine.verification.problems.cliff import Cliff
 from engine.verification.problems.collapse import Collapse
 from engine.verification.problems.column import Column
-from engine.verification.problems.ellipsoid import Ellipsoid
 from engine.verification.problems.expansion import Expansion
-from engine.verification.problems.fallback import Fallback
 from engine.verification.problems.hugoniot import MURNAGHAN, Hugoniot
 from engine.verification.problems.hydrostatic import Hydrostatic
 from engine.verification.problems.infall import Infall
 from engine.verification.problems.rotation import Rotation
 from engine.verification.problems.rubble import Rubble
 from engine.verification.problems.runout import Runout
-from engine.verification.problems.shear_jump import ShearJump
 from engine.verification.problems.slope import Slope
 from engine.verification.problems.stiffness import Stiffness
 
@@ -33,9 +30,6 @@ SHORT: dict[str, Problem] = {
         Infall(),
         Cliff(),
         Rubble(),
-        Ellipsoid(),
-        ShearJump(),
-        Fallback(),
     )
 }
 
@@ -47,9 +41,6 @@ FULL: dict[str, Problem] = {
     "collapse": Collapse(particles=(2000, 16000)),
     "cliff": Cliff(cells=15),
     "rubble": Rubble(particles=1500),
-    "ellipsoid": Ellipsoid(particles=(2000, 8000)),
-    "shear_jump": ShearJump(steps=(100, 1000, 10000)),
-    "fallback": Fallback(particles=4000),
     "slope": Slope(cells=(48, 96)),
     "stiffness": Stiffness(),
     "runout": Runout(),
