@@ -52,9 +52,10 @@ class Filtered:
 
     def stages(self, over_grid: Callable[[Exchange], Stage]) -> tuple[Stage, ...]:
         """Return kick, wall contact if there are walls, drift, projection, correction and drift."""
-        walls = (over_grid(WallContact(self)),) if self.walled else ()
-        drift = Drift(self)
-        return over_grid(Kick(self)), *walls, drift, over_grid(Projection(self)), over_grid(Correction(self)), drift
+        walls, free, drift = self.response.walls, NoWalls(), Drift(self)
+        contact = (over_grid(WallContact(self, Change(walls))),) if self.walled else ()
+        projection, correction = Projection(self, walls), Correction(self, free)
+        return over_grid(Kick(self, free)), *contact, drift, over_grid(projection), over_grid(correction), drift
 
     def inertia(self, dx: float) -> float:
         """Return m2 dx^2 [m^2], with the second moment m2 of the spline."""
@@ -91,18 +92,33 @@ class Filtered:
 
 
 @ti.data_oriented
-class Kick:
-    """Forces: q <- q + gather(impulse/mass of the nodes).
+class MotionExchange:
+    """Particles give their motion to the grid; one that shares no node stays as it is.
 
     Args:
-        scheme: whose motion is changed.
+        scheme: whose motion is exchanged.
+        nodes: what acts on the nodes.
     """
 
-    name = "kick"
+    def __init__(self, scheme: Filtered, nodes: Boundary) -> None:
+        self.scheme, self.nodes = scheme, nodes
 
-    def __init__(self, scheme: Filtered) -> None:
-        self.scheme = scheme
-        self.nodes: Boundary = NoWalls()
+    @ti.func
+    def give(self, p, dx):
+        """Return the mass and the motion of particle p."""
+        return self.scheme.scaled(p, self.scheme.motion(p), dx)
+
+    @ti.func
+    def take_alone(self, p, dx):
+        """Leave particle p, which is its own projection, as it is; sets no limits."""
+        return no_limits()
+
+
+@ti.data_oriented
+class Kick(MotionExchange):
+    """Forces: q <- q + gather(impulse/mass of the nodes)."""
+
+    name = "kick"
 
     @ti.func
     def give(self, p, dx):
@@ -128,26 +144,63 @@ class Kick:
 
 
 @ti.data_oriented
-class Drift:
-    """Motion for half a step: x <- x + dt v/2, and the affine velocity with it.
+class WallContact(MotionExchange):
+    """Walls: q <- q + gather(change of the nodes' velocity)."""
 
-    Args:
-        scheme: whose particles move.
-    """
+    name = "wall"
 
-    def __init__(self, scheme: Filtered) -> None:
-        self.scheme, self.particles, self.clock = scheme, scheme.particles, scheme.clock
+    @ti.func
+    def take(self, p, v, L, dx):
+        """Change particle p by what walls did to its nodes; sets no limits."""
+        self.scheme.change(p, v, L)
+        return no_limits()
 
-    @ti.kernel
-    def run(self):
-        """Move all particles, unless the clock has paused."""
-        half = 0.5 * self.clock.dt[None]
-        for p in range(self.particles.count * self.clock.running[None]):
-            C = self.particles.C[p]
-            after = affine_velocity(C, half, self.particles.j[p])
-            self.particles.C[p] = after
-            self.scheme.lose_affine(p, C, after)
-            self.scheme.response.move(p, half)
+
+@ti.data_oriented
+class Projection(MotionExchange):
+    """Deformation by the gradient of the projected motion Pi q, and the remainder r = q - Pi q."""
+
+    name = "projection"
+
+    @ti.func
+    def take(self, p, v, L, dx):
+        """Deform particle p by the gradient L at the middle of the step; returns its limits.
+
+        The displacement gradient of the step, dt L (I - dt L/2)^-1, is exact in a linear flow.
+        """
+        q, dt = self.scheme.motion(p), self.scheme.clock.dt[None]
+        self.scheme.remainder[p] = Motion(q.v - v, q.C - L)
+        return self.scheme.response.deform(p, L @ (identity() - 0.5 * dt * L).inverse(), dx)
+
+    @ti.func
+    def take_alone(self, p, dx):
+        """Leave particle p, which is its own projection, as it is; returns its limits."""
+        self.scheme.remainder[p] = Motion(vec3(0.0), mat3(0.0))
+        return self.scheme.response.limits_alone(p, dx)
+
+
+@ti.data_oriented
+class Correction(MotionExchange):
+    """Filter q <- q - kappa d, with d = r - Pi r = (1 - Pi)^2 q and kappa = dt times the rate, at most 1."""
+
+    name = "correction"
+
+    @ti.func
+    def give(self, p, dx):
+        """Return the mass and the remainder of particle p."""
+        return self.scheme.scaled(p, self.scheme.remainder[p], dx)
+
+    @ti.func
+    def take(self, p, v, L, dx):
+        """Filter the motion of particle p, and keep its energy as heat; sets no limits."""
+        kappa = ti.min(1.0, self.scheme.rate[None] * self.scheme.clock.dt[None])
+        r = self.scheme.remainder[p]
+        d = Motion(r.v - v, r.C - L)
+        self.scheme.change(p, -kappa * d.v, -kappa * d.C)
+        # the second term is work: forces act on the motion that is left, strain is that of the motion before
+        lost = kappa * (product(r, r, dx) - 0.5 * kappa * product(d, d, dx))
+        self.scheme.lose(p, lost + 0.5 * kappa * product(d, self.scheme.kicked[p], dx))
+        return no_limits()
 
 
 @ti.data_oriented
@@ -168,103 +221,23 @@ class Change:
 
 
 @ti.data_oriented
-class WallContact:
-    """Walls: q <- q + gather(change of the nodes' velocity).
+class Drift:
+    """Motion for half a step: x <- x + dt v/2, and the affine velocity with it.
 
     Args:
-        scheme: whose motion is changed.
+        scheme: whose particles move.
     """
 
-    name = "wall"
-
     def __init__(self, scheme: Filtered) -> None:
-        self.scheme = scheme
-        self.nodes: Boundary = Change(scheme.response.walls)
+        self.scheme, self.particles, self.clock = scheme, scheme.particles, scheme.clock
 
-    @ti.func
-    def give(self, p, dx):
-        """Return the mass and the motion of particle p."""
-        return self.scheme.scaled(p, self.scheme.motion(p), dx)
-
-    @ti.func
-    def take(self, p, v, L, dx):
-        """Change particle p by what walls did to its nodes; sets no limits."""
-        self.scheme.change(p, v, L)
-        return no_limits()
-
-    @ti.func
-    def take_alone(self, p, dx):
-        """Leave particle p, which walls stopped when it was kicked, as it is; sets no limits."""
-        return no_limits()
-
-
-@ti.data_oriented
-class Projection:
-    """Deformation by the gradient of the projected motion Pi q, and the remainder r = q - Pi q.
-
-    Args:
-        scheme: whose motion is projected.
-    """
-
-    name = "projection"
-
-    def __init__(self, scheme: Filtered) -> None:
-        self.scheme, self.nodes = scheme, scheme.response.walls
-
-    @ti.func
-    def give(self, p, dx):
-        """Return the mass and the motion of particle p."""
-        return self.scheme.scaled(p, self.scheme.motion(p), dx)
-
-    @ti.func
-    def take(self, p, v, L, dx):
-        """Deform particle p by the gradient L at the middle of the step; returns its limits.
-
-        The displacement gradient of the step, dt L (I - dt L/2)^-1, is exact in a linear flow.
-        """
-        q, dt = self.scheme.motion(p), self.scheme.clock.dt[None]
-        self.scheme.remainder[p] = Motion(q.v - v, q.C - L)
-        return self.scheme.response.deform(p, L @ (identity() - 0.5 * dt * L).inverse(), dx)
-
-    @ti.func
-    def take_alone(self, p, dx):
-        """Leave particle p, which is its own projection, as it is; returns its limits."""
-        self.scheme.remainder[p] = Motion(vec3(0.0), mat3(0.0))
-        return self.scheme.response.limits_alone(p, dx)
-
-
-@ti.data_oriented
-class Correction:
-    """Filter q <- q - kappa d, with d = r - Pi r = (1 - Pi)^2 q and kappa = dt times the rate, at most 1.
-
-    Args:
-        scheme: whose motion is filtered.
-    """
-
-    name = "correction"
-
-    def __init__(self, scheme: Filtered) -> None:
-        self.scheme = scheme
-        self.nodes: Boundary = NoWalls()
-
-    @ti.func
-    def give(self, p, dx):
-        """Return the mass and the remainder of particle p."""
-        return self.scheme.scaled(p, self.scheme.remainder[p], dx)
-
-    @ti.func
-    def take(self, p, v, L, dx):
-        """Filter the motion of particle p, keep the energy as heat; sets no limits."""
-        kappa = ti.min(1.0, self.scheme.rate[None] * self.scheme.clock.dt[None])
-        r = self.scheme.remainder[p]
-        d = Motion(r.v - v, r.C - L)
-        self.scheme.change(p, -kappa * d.v, -kappa * d.C)
-        # the second term is work: forces act on the motion that is left, strain is that of the motion before
-        lost = kappa * (product(r, r, dx) - 0.5 * kappa * product(d, d, dx))
-        self.scheme.lose(p, lost + 0.5 * kappa * product(d, self.scheme.kicked[p], dx))
-        return no_limits()
-
-    @ti.func
-    def take_alone(self, p, dx):
-        """Leave particle p, which is its own projection, as it is; sets no limits."""
-        return no_limits()
+    @ti.kernel
+    def run(self):
+        """Move all particles, unless the clock has paused."""
+        half = 0.5 * self.clock.dt[None]
+        for p in range(self.particles.count * self.clock.running[None]):
+            C = self.particles.C[p]
+            after = affine_velocity(C, half, self.particles.j[p])
+            self.particles.C[p] = after
+            self.scheme.lose_affine(p, C, after)
+            self.scheme.response.move(p, half)

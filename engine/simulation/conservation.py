@@ -6,13 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.arrays import Scalars, Vector
+from engine.quantities import HEATS
 from engine.state.particles import Arrays
 
 Row = dict[str, NDArray[np.float64]]
 """One row of the history: values by name (engine/quantities.py), numbers or vectors of shape [3]."""
-
-CAUSES = ("transfer", "plastic", "viscous")
-"""What takes energy from the motion."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +73,7 @@ def totals(
     """
     m, x, v, C, E = (state[name] for name in ("mass", "x", "v", "C", "E"))
     skew = np.stack([C[:, 2, 1] - C[:, 1, 2], C[:, 0, 2] - C[:, 2, 0], C[:, 1, 0] - C[:, 0, 1]], axis=1)
-    transfer, plastic, viscous = (float(np.sum(m * state[f"{cause}_heat"])) for cause in CAUSES)
+    transfer, plastic, viscous = (float(np.sum(m * state[name])) for name in HEATS)
     return Totals(
         mass=float(np.sum(m)),
         momentum=np.sum(m[:, None] * v, axis=0),

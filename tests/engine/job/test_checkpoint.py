@@ -36,7 +36,7 @@ def assert_same_state(one: Simulation, other: Simulation) -> None:
 def test_clock_events_and_particles_are_restored(tmp_path: Path) -> None:
     given, job = pair(**{**BARE, "gravity": {"interval": 30.0, "opening": 0.0}}), JobDirectory(tmp_path)
     first = started(given)
-    first.advance(given.end_time, steps=3)
+    first.advance(given.end_time, steps=5)
     assert first.time < first.events.gravity_due < np.inf and first.events.gravity_change > 0.0
     save_checkpoint(job, first, {"history_due": 400.0, "snapshot_due": np.inf})
     second = Simulation(given)

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
 
 from engine.scene.scene import Scene, Sphere
 from engine.verification.accuracy import figure, sweep
@@ -73,6 +72,6 @@ def test_orders_are_those_of_the_data():
 
 
 def test_the_page_s_data_are_the_runs_of_these_settings():
-    runs = xr.open_dataset(RECORDED).to_dataframe()  # of any physics version: the page names its own
+    runs = read(RECORDED)
     wanted = {(scene, setting, str(value)) for scene, tradeoff in TRADEOFFS.items() for setting, value in tradeoff.runs}
     assert set(runs[sweep.KEYS].itertuples(index=False, name=None)) == wanted
