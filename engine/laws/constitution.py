@@ -80,7 +80,7 @@ class Constitution:
         tau = s + J * (stress - P * identity())
         self.particles.j[p], self.particles.tau[p] = j, pack(tau)
         # trapezoidal rule: the work of the mean stress, so that elastic energy does not drift
-        self.energy.add(p, half_work + 0.5 / rho0 * ddot(tau, strain))
+        self.energy.work(p, half_work, 0.5 / rho0 * ddot(tau, strain))
         self.dissipate(p, before, tau, J * stress, strain)
         self.damage.grow(p, s / J, P, dt, body)
         return self.wave_speed(c2, body), diffusivity
@@ -101,6 +101,11 @@ class Constitution:
         work = ddot(0.5 * (s0 + s) - deviator(viscous), strain)
         rho0 = self.eos.rho0(body)
         self.dissipation.stress(p, (work - stored) / rho0, ddot(viscous, strain) / rho0)
+
+    @ti.func
+    def rest(self, p):
+        """Leave particle p undeformed for a step."""
+        self.energy.work(p, 0.0, 0.0)
 
     @ti.func
     def lose_to_transfer(self, p, heat):

@@ -13,10 +13,14 @@ class InternalEnergy:
     Args:
         particles: state of the particles.
         takes_heat: whether it takes up what the transfer dissipates.
+
+    Attributes:
+        half_step_work: work of stress [J/kg] in the second half of the last step, of which motion knows nothing yet.
     """
 
     def __init__(self, particles: Particles, takes_heat: bool = True) -> None:
-        self.E, self.takes_heat = particles.require("E"), takes_heat
+        self.E, self.half_step_work = particles.require("E"), particles.require("half_step_work")
+        self.takes_heat = takes_heat
 
     @ti.func
     def after(self, p, work):
@@ -24,15 +28,16 @@ class InternalEnergy:
         return self.E[p] + work
 
     @ti.func
-    def add(self, p, work):
-        """Add work to E[p]."""
-        self.E[p] = self.E[p] + work  # += would be atomic
+    def work(self, p, first_half, second_half):
+        """Add the work of stress in both halves of a step to E[p]."""
+        self.E[p] = self.E[p] + (first_half + second_half)  # += would be atomic
+        self.half_step_work[p] = second_half
 
     @ti.func
     def heat(self, p, heat):
         """Add what the transfer dissipates to E[p]."""
         if ti.static(self.takes_heat):
-            self.add(p, heat)
+            self.E[p] = self.E[p] + heat
 
 
 @ti.data_oriented
@@ -45,7 +50,7 @@ class NoInternalEnergy:
         return ti.cast(0.0, Real)
 
     @ti.func
-    def add(self, p, work):
+    def work(self, p, first_half, second_half):
         """Do nothing."""
 
     @ti.func

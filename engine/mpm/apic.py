@@ -53,4 +53,4 @@ class Apic:
         """Advance particle p freely; returns its limits."""
         self.response.fly(p)
         self.response.move(p, self.clock.dt[None])
-        return self.response.limits_alone(p, dx)
+        return self.response.rest(p, dx)

@@ -176,7 +176,7 @@ class Projection(MotionExchange):
     def take_alone(self, p, dx):
         """Leave particle p, which is its own projection, as it is; returns its limits."""
         self.scheme.remainder[p] = Motion(vec3(0.0), mat3(0.0))
-        return self.scheme.response.limits_alone(p, dx)
+        return self.scheme.response.rest(p, dx)
 
 
 @ti.data_oriented

@@ -43,8 +43,8 @@ class Response:
 
     @ti.func
     def impulse(self, p, dx):
-        """Return m dt g and -dt V0 tau/(m2 dx) [kg m/s]: momentum and affine momentum that forces add in a step."""
-        mass, dt = self.particles.mass[p], self.clock.dt[None]
+        """Return m dt g and -dt V0 tau/(m2 dx) [kg m/s]: momentum and affine momentum that forces add in a kick."""
+        mass, dt = self.particles.mass[p], self.clock.kick[None]
         volume = mass / self.constitution.rho0(p)
         return mass * (dt * self.gravity.at(p)), -dt * volume / (SECOND_MOMENT * dx) * unpack(self.particles.tau[p])
 
@@ -65,7 +65,7 @@ class Response:
         A wall stops it one step before it would cross.
         """
         dt, C = self.clock.dt[None], self.particles.C[p]
-        v = self.particles.v[p] + dt * self.gravity.at(p)
+        v = self.particles.v[p] + self.clock.kick[None] * self.gravity.at(p)
         self.particles.v[p] = self.walls.apply(self.particles.x[p] + dt * v, v)
         self.particles.C[p] = 0.5 * (C - C.transpose())
 
@@ -78,11 +78,12 @@ class Response:
             self.clock.report_moved_out()
 
     @ti.func
-    def limits_alone(self, p, dx):
-        """Return the limits of particle p, which shares no node with another.
+    def rest(self, p, dx):
+        """Leave particle p, which shares no node with another, undeformed; returns its limits.
 
         They contain its speed of sound, because the step in which it meets others is as long as the one before.
         """
+        self.constitution.rest(p)
         speed = self.constitution.signal_speed(p) + self.particles.v[p].norm()
         return Limits(speed, self._free_gradient2(p, dx), 0.0, 0.0)
 

@@ -17,6 +17,9 @@ from engine.state.particles import Arrays
 LARGEST_INCREMENT = 0.3
 """Largest deformation |dt L| of one step [-]."""
 
+FIRST_INCREMENT = 0.003
+"""Largest deformation [-] that stress alone makes in the first step: it acts at once on matter that was at rest."""
+
 
 Limits = ti.types.struct(speed=Real, gradient2=Real, acceleration2=Real, diffusivity=Real)
 """What bounds the next time step: the speed of the fastest signal, the motion of matter included [m/s], the squares of
@@ -95,7 +98,7 @@ def _rate_of_state(state: Arrays, rho0: Scalars, dx: float) -> float:
     """Inverse time step [1/s] that motion and stress inside particles demand."""
     stress = np.sqrt(np.sum(state["tau"] ** 2 * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0], axis=1))
     growth = float((stress / rho0).max()) / (SECOND_MOMENT * dx**2)
-    return max(float(_rate_of_deformation(state).max()), math.sqrt(growth / LARGEST_INCREMENT))
+    return max(float(_rate_of_deformation(state).max()), math.sqrt(growth / FIRST_INCREMENT))
 
 
 def _rate_of_deformation(state: Arrays) -> Scalars:

@@ -91,19 +91,15 @@ def totals(
     )
 
 
-def half_step_work(state: Arrays, rho0: Scalars, dt: float) -> float:
-    """Return the work [J] of stress and gravity in half a step, (dt/2) sum of m (v.g - tau:d / rho0).
+def half_step_work(state: Arrays, dt: float) -> float:
+    """Return the work [J] of stress and gravity in half a step, sum of m ((dt/2) v.g - half_step_work).
 
     Args:
-        state: fields v, C, tau, mass and acceleration of every particle.
-        rho0: reference density of every particle [kg/m^3], shape [particle_count].
-        dt: the next time step [s].
+        state: fields v, mass, acceleration and half_step_work of every particle.
+        dt: length of the last step [s].
     """
-    tau, C, m = state["tau"], state["C"], state["mass"]
-    shear = tau[:, 3] * (C[:, 1, 2] + C[:, 2, 1]) + tau[:, 4] * (C[:, 0, 2] + C[:, 2, 0])
-    shear += tau[:, 5] * (C[:, 0, 1] + C[:, 1, 0])
-    strain = np.einsum("pi,pii->p", tau[:, :3], C) + shear
-    return 0.5 * dt * float(np.sum(m * (np.einsum("pi,pi->p", state["v"], state["acceleration"]) - strain / rho0)))
+    falling = np.einsum("pi,pi->p", state["v"], state["acceleration"])
+    return float(np.sum(state["mass"] * (0.5 * dt * falling - state["half_step_work"])))
 
 
 def elastic_energy(state: Arrays, rho0: Scalars, bulk: Scalars, shear: Scalars) -> Scalars:

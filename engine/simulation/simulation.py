@@ -217,7 +217,7 @@ class Simulation:
         materials, rho0 = self.scene.materials, self.rho0(state)
         bulk = np.array([material.eos.bulk_modulus() for material in materials])[state["body"]]
         shear = np.array([material.shear_modulus for material in materials])[state["body"]]
-        elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, rho0, self.next_dt)
+        elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, float(self.clock.dt[None]))
         inertia, gravitational = self.scheme.inertia(self.scene.dx), self.gravity.energy(state["x"], state["mass"])
         return totals(state, inertia, elastic, gravitational, work, self.scene.numerics.transfer_heat)
 

@@ -11,6 +11,15 @@ FAULT_INVERTED = 1
 """Fault of a particle with det F <= 0."""
 
 
+LARGEST_STRETCH = 1.25
+"""Largest ratio of a time step to the one before it."""
+
+LARGEST_DROP = 2.0
+"""Largest ratio of a time step to the one after it at which forces act from middle to middle. Where stress appears at
+once, the longer step did not know of it.
+"""
+
+
 @ti.data_oriented
 class Clock:
     """Time, and the time step, which follows from the highest rate that the step before reported.
@@ -26,6 +35,7 @@ class Clock:
     Attributes:
         time, end, pause_time: simulated time [s] now, of the end, and up to which steps run.
         dt: length of the last step [s].
+        kick: time between the middles of this step and the one before, in which forces act [s].
         rate, least_rate: inverse of the next time step [1/s], and its lower bound.
         step: number of steps done.
         running: 1 during a step that runs, 0 during one that does nothing.
@@ -36,7 +46,7 @@ class Clock:
 
     def __init__(self, start: float, end: float, longest_step: float) -> None:
         self.time, self.end, self.pause_time = (ti.field(ti.f64, ()) for _ in range(3))
-        self.dt, self.rate, self.least_rate = (ti.field(Real, ()) for _ in range(3))
+        self.dt, self.kick, self.rate, self.least_rate = (ti.field(Real, ()) for _ in range(4))
         self.step, self.running, self.moved_out = (ti.field(ti.i32, ()) for _ in range(3))
         self.fault, self.fault_particle = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.time[None], self.end[None], self.pause_time[None] = start, end, start
@@ -67,12 +77,13 @@ class Clock:
             self.running[None] = 1
             left = self.end[None] - self.time[None]
             dt = 1.0 / ti.max(self.rate[None], self.least_rate[None])
-            self.dt[None] = ti.min(dt, left)
+            before, self.dt[None] = self.dt[None], ti.min(dt, left)
+            self.kick[None] = 0.5 * (self.dt[None] + ti.min(before, LARGEST_DROP * self.dt[None]))
             self.time[None] += self.dt[None]
             if dt >= left:
                 self.time[None] = self.end[None]
             self.step[None] += 1
-            self.rate[None] = 0.0
+            self.rate[None] = 1.0 / (LARGEST_STRETCH * self.dt[None])
 
     @ti.func
     def report_rate(self, rate):

@@ -24,6 +24,7 @@ FIELD_TYPES = {
     "origin": ti.types.vector(3, ti.i32),
     "b_minus_I": vec6,
     "E": Real,
+    "half_step_work": Real,
     "transfer_heat": Real,
     "plastic_heat": Real,
     "viscous_heat": Real,
@@ -59,6 +60,7 @@ class Particles:
         origin: coordinates of the grid block that owned the particle when blocks were last built.
         b_minus_I: b - I [-], six components, with the isochoric left Cauchy-Green tensor b of the elastic strain.
         E: specific internal energy [J/kg].
+        half_step_work: specific work of stress in the second half of the last step [J/kg].
         transfer_heat, plastic_heat, viscous_heat: specific energy that motion has lost since the start [J/kg].
         affine_loss: specific energy that the affine motion has lost in free motion since the start [J/kg].
         damage_root: cube root of the damage [-].

@@ -53,8 +53,7 @@ def test_a_study_ends_in_results_table_and_figures(uninterrupted: Path) -> None:
     assert np.isfinite(results["mass_ratio"]).all() and (results["drift_mass"] == 0.0).all()
     assert (abs(results["drift_momentum"]) < 1e-13).all()
     assert (abs(results["drift_angular_momentum"]) < 1e-4).all()
-    energy_lost = -results["drift_energy"]
-    assert (energy_lost > 0.0).all() and (energy_lost < 0.4).all()  # by the transfer, in a collision this coarse
+    assert (abs(results["drift_energy"]) < 3e-3).all()  # of the time step, in bodies this coarse
     figures = {path.name for path in (uninterrupted / "figures").iterdir()}
     assert {"maps.png", "shape_vs_angle.png", "remnants.png", "conservation.png"} <= figures
     assert (uninterrupted / "shape_table.csv").read_text().count("done") == 4

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from engine.scene.bodies import Sphere
 from engine.scene.collision import Collision
 from engine.scene.material import Material, named
@@ -101,8 +99,3 @@ def with_materials(scene: Scene, *materials: Material) -> Scene:
     """Return the scene with another material for each body."""
     bodies = zip(scene.bodies, materials, strict=True)
     return scene.model_copy(update={"bodies": tuple(b.model_copy(update={"material": m}) for b, m in bodies)})
-
-
-def uniform(**values: float) -> Changes:
-    """Return changes to fields that have the same value everywhere."""
-    return lambda scene: {name: np.full(scene.particles, value) for name, value in values.items()}

@@ -13,7 +13,6 @@ from engine.verification.stability.case import (
     impact,
     in_single_precision,
     stiffened,
-    uniform,
     with_courant_number,
     with_materials,
     with_rows,
@@ -124,7 +123,7 @@ def _stretched() -> list[ExtremeCase]:
 
 def _hot() -> list[ExtremeCase]:
     energies = (0.0, 1e6, 1e7, 2e7, 1e8, 1e9)
-    everywhere = [ExtremeCase("hot", f"E = {E:g} J/kg", alone(100.0, physics=FREE), uniform(E=E)) for E in energies]
+    everywhere = [ExtremeCase("hot", f"E = {E:g} J/kg", alone(100.0, physics=FREE), states.hot(E)) for E in energies]
     return [*everywhere, ExtremeCase("hot", "one particle, 1e8 J/kg", alone(100.0, physics=FREE), states.one_hot(1e8))]
 
 
@@ -193,7 +192,7 @@ def _single_precision() -> list[ExtremeCase]:
         ExtremeCase("f32", "radius 100 m", impact(radius=100.0)),
         ExtremeCase("f32", "moduli x 1000", with_materials(impact(fraction=0.5), stiffened(1e3), stiffened(1e3))),
         ExtremeCase("f32", "at rest", alone(hydrostatic=True)),
-        ExtremeCase("f32", "E = 1e+08 J/kg", hot, uniform(E=1e8)),
+        ExtremeCase("f32", "E = 1e+08 J/kg", hot, states.hot(1e8)),
         ExtremeCase("f32", "1e8 m away", impact(fraction=0.2), states.distant(1e8)),
         ExtremeCase("f32", "Courant number 5", with_courant_number(impact(), 5.0), physical=False),
     ]

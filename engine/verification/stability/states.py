@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from engine.arrays import Scalars
 from engine.constants import BLOCK_EDGE
 from engine.mpm.blocks import HALF_RANGE
 from engine.scene.scene import Scene
@@ -77,15 +78,31 @@ def near_the_edge(scene: Scene) -> Arrays:
     return {"x": np.array([[0.0, 0.0, 0.0], [(BLOCK_EDGE * HALF_RANGE - 50.0) * scene.dx, 0.0, 0.0]])}
 
 
+def hot(energy: float) -> Changes:
+    """Give every particle an energy [J/kg] at the density of the scene, and the pressure of that state."""
+
+    def changes(scene: Scene) -> Arrays:
+        return _heated(scene, np.full(scene.particles, energy))
+
+    return changes
+
+
 def one_hot(energy: float) -> Changes:
-    """Give one particle at the centre an energy [J/kg], and none to the others."""
+    """Give one particle at the centre an energy [J/kg] and its pressure, and none to the others."""
 
     def changes(scene: Scene) -> Arrays:
         values = np.zeros(scene.particles)
         values[np.argmin(np.linalg.norm(initial_state(scene)["x"], axis=1))] = energy
-        return {"E": values}
+        return _heated(scene, values)
 
     return changes
+
+
+def _heated(scene: Scene, E: Scalars) -> Arrays:
+    """Energies [J/kg] and the stress of matter at rest density that has them."""
+    material = scene.materials[0]
+    pressure = np.array([material.eos.pressure(material.rho0, 0.0, energy) for energy in E])
+    return {"E": E, "tau": np.outer(-pressure, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0])}
 
 
 def random_motion(speed: float, rate: float) -> Changes:

@@ -74,19 +74,17 @@ def test_isochoric_flow_of_dense_matter_is_exact():
     assert worst(after_step(flow, 1.0, np.zeros(1)), exact(flow), 0.1) < 1e-15
 
 
-def test_a_thin_sheet_that_closes_does_not_gain_energy():
-    """One layer of rubble has a rate of thinning that no particles' motion carries: it must not run away."""
-    rate = -1e-3
-    count = 100
-    given = scene(body(particles=count), end_time=4.0 / abs(rate), numerics={"cfl": 0.2})
+def test_a_thin_sheet_that_closes_does_not_run_away():
+    """One layer of rubble has a rate of thinning S that no particles' motion carries: |S| J^(1/3) never grows."""
+    rate, J, count = -1e-3, 4.0, 100
+    given = scene(body(particles=count), end_time=2.0 / abs(rate), numerics={"cfl": 0.2})
     generator = np.random.default_rng(1)
     x = 50e3 * generator.uniform(-1.0, 1.0, (count, 3)) * [3.0, 3.0, 0.0]
     C = np.tile(np.diag([0.0, 0.0, rate]), (count, 1, 1))
-    simulation = started(given, x=x, C=C, v=np.zeros((count, 3)), j=np.full(count, 3.0))
+    simulation = started(given, x=x, C=C, v=np.zeros((count, 3)), j=np.full(count, J - 1.0))
     before = simulation.totals()
     while not simulation.finished:
         advance(simulation, simulation.step + 100)
         now = simulation.totals()
-        # the layer bounces off its own pressure with a period of thirty time steps
-        assert now.affine_kinetic_energy + now.internal_energy <= 16.2 * before.affine_kinetic_energy
-        assert now.total_energy == pytest.approx(before.total_energy, rel=0.02)
+        assert now.affine_kinetic_energy + now.internal_energy <= J ** (2.0 / 3.0) * before.affine_kinetic_energy
+        assert now.total_energy == pytest.approx(before.total_energy, rel=1e-3)

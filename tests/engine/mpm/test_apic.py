@@ -19,7 +19,8 @@ def test_one_step_equals_a_dense_grid(spread):
     state = random_state(spread, given.dx)
     simulation = started(given, **state)
     dt = one_step(simulation)
-    grid, kick = DenseGrid(state["x"], state["mass"], given.dx), forces(state, given.dx, dt)
+    grid = DenseGrid(state["x"], state["mass"], given.dx)
+    kick = forces(state, given.dx, float(simulation.clock.kick[None]))
     q = grid.project(Motion(state["v"], state["C"]).plus(kick))
     alone = grid.alone[:, None]
     v = np.where(alone, state["v"] + kick.v, q.v)

@@ -38,14 +38,16 @@ def drift(x: Array, q: Motion, dt: float, j: Array) -> tuple[Array, Motion]:
     return x + dt * q.v, Motion(q.v, affine_velocity(q.C, dt, j))
 
 
-def dense_step(state: dict[str, Array], J: Array, dx: float, dt: float, kappa: float) -> tuple[Array, Motion, Array]:
+def dense_step(
+    state: dict[str, Array], J: Array, dx: float, dt: float, kick_time: float, kappa: float
+) -> tuple[Array, Motion, Array]:
     """One step of the filtered transfer (section 1): positions, motion, and which particles share no node at first.
 
     The volume J after the step is the engine's own: it only bounds the affine velocity.
     """
     q, j = Motion(state["v"], state["C"]), state["j"]
     grid = DenseGrid(state["x"], state["mass"], dx)
-    kick = forces(state, dx, dt)
+    kick = forces(state, dx, kick_time)
     kicked, free = q.plus(grid.project(kick)), Motion(q.v + kick.v, 0.5 * (q.C - q.C.transpose(0, 2, 1)))
     alone = grid.alone[:, None]
     q = Motion(np.where(alone, free.v, kicked.v), np.where(alone[..., None], free.C, kicked.C))
@@ -72,7 +74,8 @@ def test_one_step_equals_a_dense_grid(cloud, spread):
     cloud.start(**state)
     dt = one_step(cloud)
     found = cloud.particles.read("x", "v", "C", "j")
-    x, q, alone = dense_step(state, 1.0 + found["j"], dx, dt, min(1.0, dt * float(cloud.scheme.rate[None])))
+    kick, kappa = float(cloud.clock.kick[None]), min(1.0, dt * float(cloud.scheme.rate[None]))
+    x, q, alone = dense_step(state, 1.0 + found["j"], dx, dt, kick, kappa)
     assert alone.sum() == 0 if spread == 0.3 else alone.sum() > 2
     # the lightest node carries 1e-3 or less of a particle, and round-off of the sums as often
     assert worst(found["v"], q.v, lengths(q.v) + 1.0) < 1e-12

@@ -65,7 +65,7 @@ def field_names(simulation: Simulation) -> set[str]:
 
 PARTS: dict[str, tuple[set[str], list[str]]] = {
     "energy": (
-        {"E", "transfer_heat", "affine_loss"},
+        {"E", "half_step_work", "transfer_heat", "affine_loss"},
         ["laws.energy.InternalEnergy", "laws.dissipation.Dissipation", "laws.tillotson.condensed"],
     ),
     "shear": ({"b_minus_I"}, ["laws.shear.Hencky", "laws.shear.deform", "device.tensors.half_log"]),

@@ -35,8 +35,8 @@ def test_a_wave_in_a_column_takes_twice_as_long_at_half_the_speed():
         measured.append(StandingWave(16, sound_speed=factor).measure(Harness()))
     fast, slow = measured
     assert fast.speed == pytest.approx(BASALT.longitudinal_speed, rel=0.02)
-    # the error of the scheme scales along, but for the motion in the Courant condition
-    assert slow.speed == pytest.approx(0.5 * fast.speed, rel=1e-9)
+    # the error of the scheme scales along, but for the motion in the Courant condition, 1e-6 of it
+    assert slow.speed == pytest.approx(0.5 * fast.speed, rel=1e-8)
 
 
 @pytest.mark.usefixtures("taichi")

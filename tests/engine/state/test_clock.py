@@ -39,8 +39,26 @@ def test_the_next_step_follows_from_the_highest_rate_reported_up_to_the_longest(
     assert clock.dt[None] == 4.0
     take_step(clock, 0.01)
     assert clock.dt[None] == 0.5
-    take_step(clock, 1.0)
-    assert (clock.dt[None], clock.time[None], clock.step[None]) == (4.0, 8.5, 3)
+
+
+def test_steps_grow_by_a_quarter_at_most_and_shrink_at_once():
+    clock, lengths = clock_until(10.0), []
+    clock.rate[None] = 2.0
+    for rate in (0.01, 0.01, 0.01, 4.0, 0.01):
+        take_step(clock, rate)
+        lengths.append(clock.dt[None])
+    assert lengths == [0.5, 0.625, 0.78125, 0.9765625, 0.25]
+    assert (clock.time[None], clock.step[None]) == (sum(lengths), 5)
+
+
+def test_forces_act_between_the_middles_of_steps():
+    """First from the start to the middle of the first step, and never for longer than one and a half steps."""
+    clock, kicks, rates = clock_until(10.0), [], (1.0, 2.0, 8.0)
+    for rate in rates:
+        clock.rate[None] = rate
+        take_step(clock, rate)
+        kicks.append(clock.kick[None])
+    assert kicks == [0.5, 0.5 * (1.0 + 0.5), 0.5 * (2.0 * 0.125 + 0.125)]
 
 
 def test_the_last_step_ends_on_the_end_exactly():

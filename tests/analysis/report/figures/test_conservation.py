@@ -12,6 +12,7 @@ ENERGIES = {
     "kinetic": "kinetic_energy",
     "kinetic, affine part": "affine_kinetic_energy",
     "internal": "internal_energy",
+    "of it heat of the transfer": "transfer_heat",
     "gravitational": "gravitational_energy",
     "total": "total_energy",
 }

@@ -9,7 +9,7 @@ import pytest
 import engine.simulation.guard
 from engine.job.directory import JobDirectory
 from engine.job.storage import read_dataset
-from engine.verification.stability.case import ExtremeCase, alone, uniform
+from engine.verification.stability.case import ExtremeCase, alone
 from engine.verification.stability.cases import FREE
 from engine.verification.stability.measures import LARGEST_GROWTH
 from engine.verification.stability.outcome import FAILED, STABLE, STOPPED, run_case
@@ -54,7 +54,10 @@ def test_an_exception_is_a_failure(tmp_path: Path) -> None:
 
 
 def test_a_start_that_a_checkpoint_cannot_hold_is_a_failure_and_not_replaced_by_the_scenes_own(tmp_path: Path) -> None:
-    outcome = run_case(ExtremeCase("any", "any", alone(100.0, physics=FREE), uniform(E=np.nan)), tmp_path)
+    def undefined(scene):
+        return {"E": np.full(scene.particles, np.nan)}
+
+    outcome = run_case(ExtremeCase("any", "any", alone(100.0, physics=FREE), undefined), tmp_path)
     assert outcome.verdict == FAILED and "E of particle 0 is not finite" in outcome.reason
 
 
