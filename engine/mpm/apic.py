@@ -34,7 +34,7 @@ class Apic:
 
     @ti.func
     def give(self, p, dx):
-        """Return m [kg], m (v + dt g) and m dx C - dt V0 tau/(m2 dx) [kg m/s]."""
+        """Return m [kg], m (v + t g) and m dx C - t V0 tau/(m2 dx) [kg m/s], with the time t in which forces act."""
         mass = self.particles.mass[p]
         momentum, affine = self.response.impulse(p, dx)
         return mass, mass * self.particles.v[p] + momentum, (mass * dx) * self.particles.C[p] + affine

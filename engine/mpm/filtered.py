@@ -122,7 +122,7 @@ class Kick(MotionExchange):
 
     @ti.func
     def give(self, p, dx):
-        """Return m [kg], m dt g and -dt V0 tau/(m2 dx) [kg m/s]."""
+        """Return m [kg], m t g and -t V0 tau/(m2 dx) [kg m/s], with the time t in which forces act."""
         momentum, affine = self.scheme.response.impulse(p, dx)
         return self.scheme.particles.mass[p], momentum, affine
 
@@ -197,9 +197,10 @@ class Correction(MotionExchange):
         r = self.scheme.remainder[p]
         d = Motion(r.v - v, r.C - L)
         self.scheme.change(p, -kappa * d.v, -kappa * d.C)
-        # the second term is work: forces act on the motion that is left, strain is that of the motion before
         lost = kappa * (product(r, r, dx) - 0.5 * kappa * product(d, d, dx))
-        self.scheme.lose(p, lost + 0.5 * kappa * product(d, self.scheme.kicked[p], dx))
+        # work: forces act on the motion that is left, strain is that of the motion before
+        share = self.scheme.clock.dt[None] / self.scheme.clock.kick[None]
+        self.scheme.lose(p, lost + 0.5 * share * kappa * product(d, self.scheme.kicked[p], dx))
         return no_limits()
 
 

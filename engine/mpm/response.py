@@ -43,10 +43,10 @@ class Response:
 
     @ti.func
     def impulse(self, p, dx):
-        """Return m dt g and -dt V0 tau/(m2 dx) [kg m/s]: momentum and affine momentum that forces add in a kick."""
-        mass, dt = self.particles.mass[p], self.clock.kick[None]
+        """Return m t g and -t V0 tau/(m2 dx) [kg m/s]: what forces add in the time t between the middles of steps."""
+        mass, time = self.particles.mass[p], self.clock.kick[None]
         volume = mass / self.constitution.rho0(p)
-        return mass * (dt * self.gravity.at(p)), -dt * volume / (SECOND_MOMENT * dx) * unpack(self.particles.tau[p])
+        return mass * (time * self.gravity.at(p)), -time * volume / (SECOND_MOMENT * dx) * unpack(self.particles.tau[p])
 
     @ti.func
     def deform(self, p, L, dx):
@@ -81,7 +81,8 @@ class Response:
     def rest(self, p, dx):
         """Leave particle p, which shares no node with another, undeformed; returns its limits.
 
-        They contain its speed of sound, because the step in which it meets others is as long as the one before.
+        They contain its speed of sound, because the length of the step in which it meets others
+        follows from the one before.
         """
         self.constitution.rest(p)
         speed = self.constitution.signal_speed(p) + self.particles.v[p].norm()

@@ -26,8 +26,8 @@ class Totals:
         internal_energy: all work of stress, elastic energy included [J].
         elastic_energy: part of the internal energy that is stored in strain [J].
         gravitational_energy: potential energy of gravity [J].
-        half_step_work: work of stress and gravity in half the next step [J]. Velocities belong half a step before
-            positions; this takes kinetic energy to the time of the other energies.
+        half_step_work: work of stress and gravity in the second half of the last step [J]. Velocities belong to its
+            middle; this takes kinetic energy to the time of the other energies.
         transfer_heat, plastic_heat, viscous_heat: energy that motion has lost since the start, by cause [J].
         lost_energy: what affine motion has lost in free motion, and heat that internal energy does not contain [J].
     """
@@ -68,7 +68,7 @@ def totals(
         inertia: moment of inertia per mass of the affine motion of a particle [m^2].
         elastic: elastic energy of every particle [J], shape [particle_count].
         gravitational_energy: potential energy of gravity [J].
-        half_step_work: work of stress and gravity in half the next step [J].
+        half_step_work: work of stress and gravity in the second half of the last step [J].
         takes_heat: whether internal energy contains the heat of the transfer.
     """
     m, x, v, C, E = (state[name] for name in ("mass", "x", "v", "C", "E"))
@@ -92,7 +92,7 @@ def totals(
 
 
 def half_step_work(state: Arrays, dt: float) -> float:
-    """Return the work [J] of stress and gravity in half a step, sum of m ((dt/2) v.g - half_step_work).
+    """Return the work [J] of stress and gravity in the second half of a step, sum of m ((dt/2) v.g - half_step_work).
 
     Args:
         state: fields v, mass, acceleration and half_step_work of every particle.

@@ -95,8 +95,9 @@ class Simulation:
         Args:
             changes: whole fields of the particles that replace the scene's own, shape [particle_count, ...].
         """
-        self.particles.write({**initial_state(self.scene), **changes})
+        self.particles.write({**initial_state(self.scene), "half_step_work": np.zeros(self.scene.particles), **changes})
         self.rebuild_blocks()
+        self.clock.dt[None] = 0.0
         self.clock.rate[None] = self._first_rate(self.particles.read("C", "tau", "body"))
 
     def advance(self, until: float, steps: int = LAUNCHES) -> None:

@@ -22,7 +22,7 @@ once, the longer step did not know of it.
 
 @ti.data_oriented
 class Clock:
-    """Time, and the time step, which follows from the highest rate that the step before reported.
+    """Time, and the time step, which follows from the highest rate that the step before reported, and grows slowly.
 
     A step does nothing once `pause_time` is reached, a particle is out of its block, or there is a fault. The host may
     therefore launch more steps than are run; results do not depend on how many.
@@ -35,7 +35,7 @@ class Clock:
     Attributes:
         time, end, pause_time: simulated time [s] now, of the end, and up to which steps run.
         dt: length of the last step [s].
-        kick: time between the middles of this step and the one before, in which forces act [s].
+        kick: time in which forces act [s], from the middle of the step before to the middle of this one.
         rate, least_rate: inverse of the next time step [1/s], and its lower bound.
         step: number of steps done.
         running: 1 during a step that runs, 0 during one that does nothing.
@@ -78,12 +78,12 @@ class Clock:
             left = self.end[None] - self.time[None]
             dt = 1.0 / ti.max(self.rate[None], self.least_rate[None])
             before, self.dt[None] = self.dt[None], ti.min(dt, left)
-            self.kick[None] = 0.5 * (self.dt[None] + ti.min(before, LARGEST_DROP * self.dt[None]))
+            self.kick[None] = 0.5 * (self.dt[None] + ti.min(before, LARGEST_DROP * dt))
             self.time[None] += self.dt[None]
             if dt >= left:
                 self.time[None] = self.end[None]
             self.step[None] += 1
-            self.rate[None] = 1.0 / (LARGEST_STRETCH * self.dt[None])
+            self.rate[None] = 1.0 / (LARGEST_STRETCH * dt)
 
     @ti.func
     def report_rate(self, rate):

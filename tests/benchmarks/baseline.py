@@ -56,4 +56,4 @@ def step_together(simulation: Simulation, others: Sequence[DenseTransfer], steps
     for _ in range(steps):
         dt = take_step(simulation)
         for other in others:
-            other.step(dt)
+            other.step(dt, float(simulation.clock.kick[None]))

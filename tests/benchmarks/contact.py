@@ -18,7 +18,7 @@ def continued(simulation: Simulation, scene: Scene) -> Simulation:
     """Another scene with the same particles, in the state of a simulation as far as its parts hold it."""
     result = Simulation(scene)
     now = simulation.clock_state()
-    clock_state = {**result.clock_state(), "rate": now["rate"], "time": now["time"]}
+    clock_state = {**result.clock_state(), "rate": now["rate"], "dt": now["dt"], "time": now["time"]}
     result.restore(simulation.particles.read(*result.particles.allocated), clock_state)
     result.clock.pause_time[None] = scene.end_time
     return result

@@ -37,10 +37,10 @@ class DenseTransfer:
         self.lowest = ti.Vector(lowest)
         self.nodes = vec4.field(shape=shape)
 
-    def step(self, dt: float) -> None:
-        """Advance all particles by one time step [s]."""
+    def step(self, dt: float, kick: float) -> None:
+        """Advance all particles by one time step [s], in which forces act for the time of a kick [s]."""
         self.clear()
-        self.particles_to_grid(dt)
+        self.particles_to_grid(kick)
         self.update_grid()
         self.grid_to_particles(dt)
 
@@ -51,16 +51,16 @@ class DenseTransfer:
             self.nodes[node] = vec4(0.0)
 
     @ti.kernel
-    def particles_to_grid(self, dt: ti.f64):
+    def particles_to_grid(self, kick: ti.f64):
         """Mass and momentum, with the momentum that stress adds over the step."""
         for p in range(self.particles.count):
             base, f = self.locate(p)
             weights = spline_weights(f)
             mass = self.particles.mass[p]
             volume = mass / self.constitution.rho0(p)
-            stress = (4.0 * dt * volume / (self.dx * self.dx)) * unpack(self.particles.tau[p])
+            stress = (4.0 * kick * volume / (self.dx * self.dx)) * unpack(self.particles.tau[p])
             affine = mass * self.particles.C[p] - stress
-            momentum = mass * (self.particles.v[p] + dt * self.gravity.at(p))
+            momentum = mass * (self.particles.v[p] + kick * self.gravity.at(p))
             for i, j, k in ti.static(ti.ndrange(3, 3, 3)):
                 weight = weights[0, i] * weights[1, j] * weights[2, k]
                 m = momentum + affine @ (self.dx * (vec3(i, j, k) - f))

@@ -11,7 +11,7 @@ TOUCHED = {
     "projection": (
         "x mass v C",
         "x mass v C body acceleration b_minus_I j E damage_root tau plastic_heat viscous_heat",
-        "remainder b_minus_I j E damage_root tau plastic_heat viscous_heat",
+        "remainder b_minus_I j E half_step_work damage_root tau plastic_heat viscous_heat",
     ),
     "correction": ("x mass remainder", "x mass remainder kicked v C E transfer_heat", "v C E transfer_heat"),
 }

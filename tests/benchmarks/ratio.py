@@ -65,7 +65,7 @@ def take_turns(
         for name, other in others.items():
             with watches[name].lap():
                 for dt in steps:
-                    other.step(dt)
+                    other.step(dt, dt)
     return watches
 
 

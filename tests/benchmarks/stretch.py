@@ -49,7 +49,7 @@ class StretchConstitution(Constitution):
         F, s, largest = self.shear_part(F, J, P, E, p)
         tau = s - J * P * identity()
         self.F[p], self.particles.j[p], self.particles.tau[p] = F, J - 1.0, pack(tau)
-        self.energy.add(p, half_work + 0.5 / rho0 * ddot(tau, strain))
+        self.energy.work(p, half_work, 0.5 / rho0 * ddot(tau, strain))
         self.damage.damage_root[p] = self.grow(largest / J - P, dt, p)
         return self.wave_speed(c2, body), 0.0
 

@@ -47,5 +47,5 @@ def test_the_usual_way_gives_the_results_of_the_engine(ready):
 def test_a_different_step_is_seen(ready):
     simulation, usual, dense = ready
     for other, limit in ((usual, ROUND_OFF_SVD), (dense, ROUND_OFF)):
-        other.step(1e-4)
+        other.step(1e-4, 1e-4)
         assert differences(simulation, other)["x"] > limit
