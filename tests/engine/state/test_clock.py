@@ -69,6 +69,14 @@ def test_the_last_step_ends_on_the_end_exactly():
     assert clock.dt[None] == pytest.approx(0.1) and clock.dt[None] != 0.1
 
 
+def test_a_last_step_that_the_end_cuts_short_keeps_the_kick_and_the_next_step_whole():
+    clock = clock_until(1.125, end=1.125)
+    clock.rate[None] = 1.0
+    assert [take_step(clock, 0.25) for _ in range(2)] == [1, 1]
+    assert (clock.dt[None], clock.kick[None]) == (0.125, 0.5 * (1.0 + 0.125))
+    assert clock.rate[None] == 1.0 / (1.25 * 1.25)
+
+
 def test_steps_past_the_pause_do_nothing():
     clock = clock_until(5.0)
     assert [take_step(clock, 0.0) for _ in range(4)] == [1, 1, 0, 0]
