@@ -15,7 +15,8 @@ class InternalEnergy:
         takes_heat: whether it takes up what the transfer dissipates.
 
     Attributes:
-        half_step_work: work of stress [J/kg] in the second half of the last step, of which motion knows nothing yet.
+        half_step_work: work of stress [J/kg] in the second half of the last step, which no kick has taken from the
+            motion yet.
     """
 
     def __init__(self, particles: Particles, takes_heat: bool = True) -> None:

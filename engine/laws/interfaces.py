@@ -33,7 +33,7 @@ class EnergyLaw(Protocol):
         """Return E of particle p after work [J/kg] that is not yet added; zero where no energy is kept."""
 
     def work(self, p, first_half, second_half):
-        """Add work [J/kg] of stress in both halves of a step to E of particle p; called last in the step."""
+        """Add work [J/kg] of stress in both halves of a step to E of particle p; called once a step."""
 
     def heat(self, p, heat):
         """Add what the transfer dissipates [J/kg] to E of particle p, if it is to take it up."""

@@ -82,7 +82,7 @@ def hot(energy: float) -> Changes:
     """Give every particle an energy [J/kg] at the density of the scene, and the pressure of that state."""
 
     def changes(scene: Scene) -> Arrays:
-        return _heated(scene, np.full(scene.particles, energy))
+        return _heated(scene, energy, np.ones(scene.particles))
 
     return changes
 
@@ -91,18 +91,18 @@ def one_hot(energy: float) -> Changes:
     """Give one particle at the centre an energy [J/kg] and its pressure, and none to the others."""
 
     def changes(scene: Scene) -> Arrays:
-        values = np.zeros(scene.particles)
-        values[np.argmin(np.linalg.norm(initial_state(scene)["x"], axis=1))] = energy
-        return _heated(scene, values)
+        where = np.zeros(scene.particles)
+        where[np.argmin(np.linalg.norm(initial_state(scene)["x"], axis=1))] = 1.0
+        return _heated(scene, energy, where)
 
     return changes
 
 
-def _heated(scene: Scene, E: Scalars) -> Arrays:
-    """Energies [J/kg] and the stress of matter at rest density that has them."""
+def _heated(scene: Scene, energy: float, where: Scalars) -> Arrays:
+    """Energy [J/kg] where it is 1 and none where it is 0, and the stress of matter at rest density that has it."""
     material = scene.materials[0]
-    pressure = np.array([material.eos.pressure(material.rho0, 0.0, energy) for energy in E])
-    return {"E": E, "tau": np.outer(-pressure, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0])}
+    pressure = material.eos.pressure(material.rho0, 0.0, energy)
+    return {"E": energy * where, "tau": np.outer(-pressure * where, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0])}
 
 
 def random_motion(speed: float, rate: float) -> Changes:
