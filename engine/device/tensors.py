@@ -58,6 +58,18 @@ def norm_squared(S):
 
 
 @ti.func
+def moved(C, dt):
+    """Return C (I + dt C)^-1, the gradient of a linear flow C after a time dt.
+
+    By the theorem of Cayley and Hamilton, without an inverse: (C + dt (tr C C - C^2) + dt^2 det C I)/det(I + dt C).
+    """
+    square, det, trace = C @ C, C.determinant(), C.trace()
+    second = 0.5 * (trace * trace - square.trace())
+    above = C + dt * (trace * C - square) + (dt * dt * det) * identity()
+    return above / (1.0 + dt * (trace + dt * (second + dt * det)))
+
+
+@ti.func
 def determinant_increment(H):
     """Return det(I + H) - 1, without cancellation for small H."""
     minors = (

@@ -62,7 +62,7 @@ class Constitution:
             dt: time step [s].
 
         Returns:
-            Speed of the fastest wave [m/s] and diffusivity of momentum [m^2/s].
+            Signal speed [m/s] and diffusivity of momentum [m^2/s].
         """
         body = self.particles.body[p]
         rho0, H = self.eos.rho0(body), dt * L
@@ -83,7 +83,7 @@ class Constitution:
         self.energy.work(p, half_work, 0.5 / rho0 * ddot(tau, strain))
         self.dissipate(p, before, tau, J * stress, strain)
         self.damage.grow(p, s / J, P, dt, body)
-        return self.wave_speed(c2, body), diffusivity
+        return self.fastest(c2, body), diffusivity
 
     @ti.func
     def dissipate(self, p, before, after, viscous, strain):
@@ -120,20 +120,22 @@ class Constitution:
 
     @ti.func
     def signal_speed(self, p):
-        """Return the speed of the fastest wave [m/s] in the present state of particle p."""
+        """Return the signal speed [m/s] in the present state of particle p."""
         body, J = self.particles.body[p], 1.0 + self.particles.j[p]
         _, c2 = self.eos.evaluate(p, -self.particles.j[p] / J, self.energy.after(p, 0.0), body)
-        return self.wave_speed(c2, body)
+        return self.fastest(c2, body)
 
     @ti.func
-    def wave_speed(self, c2, body):
-        """Return the longitudinal speed sqrt(c^2 + 4 G / (3 rho0)) [m/s].
+    def fastest(self, c2, body):
+        """Return the signal speed sqrt(max(3 c^2, 2 G/rho0)) [m/s].
+
+        No particles, however they lie, oscillate faster than 2 of it over dx (engine/physics.md, section 1).
 
         Args:
             c2: squared speed of sound of the equation of state [m^2/s^2].
             body: index of the body.
         """
-        return ti.sqrt(c2 + 4.0 / 3.0 * self.shear.modulus(body) / self.eos.rho0(body))
+        return ti.sqrt(ti.max(3.0 * c2, 2.0 * self.shear.modulus(body) / self.eos.rho0(body)))
 
 
 @ti.func

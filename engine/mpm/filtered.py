@@ -10,7 +10,7 @@ import taichi as ti
 
 from engine.device.backend import Real, mat3, vec3
 from engine.device.fields import capacity
-from engine.device.tensors import identity, norm_squared
+from engine.device.tensors import moved, norm_squared
 from engine.mpm.affine import affine_velocity
 from engine.mpm.interfaces import Boundary, Exchange, Stage
 from engine.mpm.response import Response
@@ -170,7 +170,7 @@ class Projection(MotionExchange):
         """
         q, dt = self.scheme.motion(p), self.scheme.clock.dt[None]
         self.scheme.remainder[p] = Motion(q.v - v, q.C - L)
-        return self.scheme.response.deform(p, L @ (identity() - 0.5 * dt * L).inverse(), dx)
+        return self.scheme.response.deform(p, moved(L, -0.5 * dt), dx)
 
     @ti.func
     def take_alone(self, p, dx):
@@ -238,7 +238,7 @@ class Drift:
         half = 0.5 * self.clock.dt[None]
         for p in range(self.particles.count * self.clock.running[None]):
             C = self.particles.C[p]
-            after = affine_velocity(C, half, self.particles.j[p])
+            after = affine_velocity(C, half, self.particles.j[p], self.scheme.rate[None])
             self.particles.C[p] = after
             self.scheme.lose_affine(p, C, after)
             self.scheme.response.move(p, half)

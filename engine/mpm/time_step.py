@@ -109,4 +109,4 @@ def _rate_of_deformation(state: Arrays) -> Scalars:
 def _fastest(body: Body, material: Material) -> float:
     """Highest signal speed [m/s] in an unstressed body."""
     rotation = float(np.linalg.norm(body.spin)) * body.reach
-    return material.longitudinal_speed + float(np.linalg.norm(body.velocity)) + rotation
+    return material.signal_speed + float(np.linalg.norm(body.velocity)) + rotation

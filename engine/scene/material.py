@@ -107,6 +107,11 @@ class Material(Frozen):
         return float((self.longitudinal_modulus / self.rho0) ** 0.5)
 
     @property
+    def signal_speed(self) -> float:
+        """Speed sqrt(max(3 K, 2 G)/rho0) [m/s] that limits time steps at the reference state (physics.md, section 1)."""
+        return float((max(3.0 * self.eos.bulk_modulus(), 2.0 * self.shear_modulus) / self.rho0) ** 0.5)
+
+    @property
     def young_modulus(self) -> float:
         """9KG/(3K+G) [Pa] at the reference state."""
         bulk, shear = self.eos.bulk_modulus(), self.shear_modulus

@@ -114,12 +114,12 @@ class Numerics(Frozen):
     """Resolution in space and time; the grid is dx = h particles_per_cell^(1/3) (for `f32`: physics.md, section 10)."""
 
     particles_per_cell: Annotated[Positive, key("particles in a cell of the grid", "1")] = 4.0
-    cfl: Annotated[Fraction, key("time step in units of dx/(wave speed + particle speed)", "1")] = 0.5
+    cfl: Annotated[Fraction, key("time step in units of dx/(signal speed + particle speed): stable below 1", "1")] = 0.6
     transfer: Annotated[
         Literal["filtered", "apic"], key("transfer between particles and grid; `apic` is there to compare with")
     ] = "filtered"
     filter_time: Annotated[
-        Positive, key("time in which motion that the grid cannot represent decays, in dx/(speed of sound)", "1")
+        Positive, key("time in which motion that the grid cannot represent decays, in dx/(speed of sound + speed of bodies)", "1")
     ] = 1.0
     transfer_heat: Annotated[bool, key("whether internal energy takes up what the filter dissipates")] = True
     precision: Annotated[Precision, key("precision of numbers on the device")] = "f64"

@@ -25,6 +25,7 @@ from engine.mpm.response import Response
 from engine.mpm.walls import NoWalls, Walls
 from engine.scene.scene import Scene
 from engine.scene.tillotson import TillotsonParameters
+from engine.simulation.bounds import speed_of_motion
 from engine.simulation.initial_conditions import all_flaws
 from engine.state.particles import Particles
 
@@ -76,7 +77,7 @@ def scheme(scene: Scene, response: Response) -> Scheme:
     """
     if scene.numerics.transfer == "apic":
         return Apic(response)
-    speed = max(material.longitudinal_speed for material in scene.materials)
+    speed = max(material.longitudinal_speed for material in scene.materials) + speed_of_motion(scene)
     return Filtered(response, speed / (scene.numerics.filter_time * scene.dx), walled=bool(scene.physics.walls))
 
 

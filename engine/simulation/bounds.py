@@ -10,6 +10,9 @@ from engine.scene.material import Material
 from engine.scene.scene import Scene
 from engine.simulation.conservation import Row
 
+LEAST_ENERGY_CHANGE = 1e-3
+"""Change of the total energy that every run may have, in the measure of `energy_growth` [-]."""
+
 LARGEST_COMPRESSION = 1e6
 """Compression rho/rho0 [-] above which a bound counts as infinite."""
 
@@ -21,24 +24,26 @@ def speed_scale(scene: Scene, start: Row) -> float:
         scene: what is simulated.
         start: first row of its history.
     """
-    bodies = 2.0 * max(float(np.linalg.norm(b.velocity) + np.linalg.norm(b.spin) * b.reach) for b in scene.bodies)
     energy = float(start["kinetic_energy"] + abs(start["internal_energy"]) + start["elastic_energy"])
     energy += _rounding(scene, start)
-    return math.sqrt(bodies**2 + 2.0 * energy / float(start["mass"]) + _fall(scene) ** 2)
-
-
-def _fall(scene: Scene) -> float:
-    """Speed [m/s] that gravity can add.
-
-    Self-gravity: of a fall from rest at infinity to the centre of one ball that has all mass and the softening radius.
-    Uniform gravity: of a fall for the whole simulated time.
-    """
-    gravity = scene.physics.gravity
-    if gravity:
-        mass = sum(body.mass for body in scene.bodies)
-        return math.sqrt(3.0 * G_NEWTON * mass / (gravity.softening * scene.spacing))
     pull = float(np.linalg.norm(scene.physics.uniform_gravity or 0.0))
-    return pull * (scene.end_time - scene.start_time)
+    fall = pull * (scene.end_time - scene.start_time)
+    return math.hypot(speed_of_motion(scene), math.sqrt(2.0 * energy / float(start["mass"])), fall)
+
+
+def speed_of_motion(scene: Scene) -> float:
+    """Return the speed [m/s] that bodies have relative to each other, and self-gravity can add.
+
+    Self-gravity adds that of a fall from rest at infinity to the centre of one ball that has all mass and the
+    softening radius.
+
+    Args:
+        scene: what is simulated.
+    """
+    bodies = 2.0 * max(float(np.linalg.norm(b.velocity) + np.linalg.norm(b.spin) * b.reach) for b in scene.bodies)
+    gravity, mass = scene.physics.gravity, sum(body.mass for body in scene.bodies)
+    fall = math.sqrt(3.0 * G_NEWTON * mass / (gravity.softening * scene.spacing)) if gravity else 0.0
+    return math.hypot(bodies, fall)
 
 
 def compression_limit(material: Material, energy: float) -> float:
@@ -54,6 +59,19 @@ def compression_limit(material: Material, energy: float) -> float:
 
     largest = math.log(LARGEST_COMPRESSION)
     return math.exp(brentq(missing, 0.0, largest)) if missing(largest) > 0.0 else math.inf
+
+
+def largest_energy_change(scene: Scene) -> float:
+    """Return the largest change of the total energy in the measure of `energy_growth` [-].
+
+    It is of second order in the size of cells: (dx/R)^2/15 of a sphere with as many particles as the smallest body.
+
+    Args:
+        scene: what is simulated.
+    """
+    fewest = min(body.count for body in scene.bodies)
+    cell = (4.0 / 3.0 * math.pi * scene.numerics.particles_per_cell / fewest) ** (1.0 / 3.0)
+    return max(cell**2 / 15.0, LEAST_ENERGY_CHANGE)
 
 
 def energy_growth(scene: Scene, row: Row, start: Row) -> float:

@@ -17,6 +17,7 @@ from engine.simulation.bounds import (
     dissipates,
     energy_growth,
     keeps_energy,
+    largest_energy_change,
     keeps_momentum,
     momentum_drift,
     speed_scale,
@@ -26,9 +27,6 @@ from engine.state.particles import Arrays, Particles
 
 SPEED_FACTOR = 10.0
 """Largest speed in units of the scene's [-]: rebounds reach two or three of them, jets a few."""
-
-ENERGY_CHANGE = 0.05
-"""Largest change of the total energy in the measure of `energy_growth` [-]; its largest loss is 1 if it may fall."""
 
 LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
 """Largest change of the total momentum in units of mass times the scene's speeds [-]."""
@@ -111,10 +109,10 @@ class Guard:
             raise stop("change of total momentum [kg m/s]", drift, f"at most {allowed:.3g}", time, advice=advice)
 
     def _check_energy(self, row: Row, time: float) -> None:
-        growth = energy_growth(self.scene, row, self.start)
-        least = -1.0 if dissipates(self.scene) else -ENERGY_CHANGE
-        if keeps_energy(self.scene) and not least <= growth <= ENERGY_CHANGE:
-            allowed = f"between {least:g} and {ENERGY_CHANGE:g}"
+        growth, most = energy_growth(self.scene, row, self.start), largest_energy_change(self.scene)
+        least = -1.0 if dissipates(self.scene) else -most
+        if keeps_energy(self.scene) and not least <= growth <= most:
+            allowed = f"between {least:.3g} and {most:.3g}"
             quantity = "growth of total energy, as a fraction of all energies"
             raise stop(quantity, growth, allowed, time, advice=SMALLER_STEPS)
 

@@ -5,6 +5,7 @@ from engine.verification.problems.bar import Bar
 from engine.verification.problems.cliff import Cliff
 from engine.verification.problems.collapse import Collapse
 from engine.verification.problems.column import Column
+from engine.verification.problems.ellipsoid import Ellipsoid
 from engine.verification.problems.expansion import Expansion
 from engine.verification.problems.hugoniot import MURNAGHAN, Hugoniot
 from engine.verification.problems.hydrostatic import Hydrostatic
@@ -12,6 +13,7 @@ from engine.verification.problems.infall import Infall
 from engine.verification.problems.rotation import Rotation
 from engine.verification.problems.rubble import Rubble
 from engine.verification.problems.runout import Runout
+from engine.verification.problems.shear_jump import ShearJump
 from engine.verification.problems.slope import Slope
 from engine.verification.problems.stiffness import Stiffness
 
@@ -30,6 +32,8 @@ SHORT: dict[str, Problem] = {
         Infall(),
         Cliff(),
         Rubble(),
+        Ellipsoid(),
+        ShearJump(),
     )
 }
 
@@ -41,6 +45,8 @@ FULL: dict[str, Problem] = {
     "collapse": Collapse(particles=(2000, 16000)),
     "cliff": Cliff(cells=15),
     "rubble": Rubble(particles=1500),
+    "ellipsoid": Ellipsoid(particles=(2000, 8000)),
+    "shear_jump": ShearJump(steps=(100, 1000, 10000)),
     "slope": Slope(cells=(48, 96)),
     "stiffness": Stiffness(),
     "runout": Runout(),

@@ -45,7 +45,7 @@ class MaterialPoint:
 
     Attributes:
         particles: their state.
-        wave_speed: speed of the fastest wave in the last step [m/s], shape [count].
+        signal_speed: of the time step after the last one [m/s], shape [count].
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class MaterialPoint:
             Damage(self.particles, fracture or Unbreakable()),
             viscosity or Inviscid(),
         )
-        self.wave_speed = np.zeros(count, HOST_REAL)
+        self.signal_speed = np.zeros(count, HOST_REAL)
 
     def step(self, L: ArrayLike, dt: float) -> None:
         """Advance strain, energy, damage and stress by a step of constant velocity gradient.
@@ -79,7 +79,7 @@ class MaterialPoint:
             dt: length of the step [s].
         """
         shape = (self.particles.count, 3, 3)
-        self._update(np.ascontiguousarray(np.broadcast_to(np.asarray(L, HOST_REAL), shape)), dt, self.wave_speed)
+        self._update(np.ascontiguousarray(np.broadcast_to(np.asarray(L, HOST_REAL), shape)), dt, self.signal_speed)
 
     def settle(self) -> None:
         """Take a step without motion: stress is then that of the energy and strain at the end of the last step."""

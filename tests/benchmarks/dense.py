@@ -88,7 +88,7 @@ class DenseTransfer:
                 L += 4.0 / self.dx * weighted.outer_product(vec3(i, j, k) - f)
             self.particles.x[p] = self.particles.x[p] + dt * v
             self.particles.v[p] = v
-            self.particles.C[p] = affine_velocity(L, dt, self.particles.j[p])
+            self.particles.C[p] = affine_velocity(L, dt, self.particles.j[p], 1.0 / dt)
             self.constitution.update(p, L, dt)
 
     @ti.func

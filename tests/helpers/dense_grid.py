@@ -64,13 +64,18 @@ def forces(state: dict[str, Array], dx: float, dt: float) -> Motion:
     return Motion(dt * state["acceleration"], -4.0 * dt / (RHO0 * dx**2) * state["tau"][:, INDEX])
 
 
-def affine_velocity(C: Array, dt: float, j: Array) -> Array:
-    """sym(C (I + dt C)^-1) + skew(C), the part of S = sym(C) at most |S| max(J, 1)^(1/3) where matter is dilated."""
+def affine_velocity(C: Array, dt: float, j: Array, rate: float) -> Array:
+    """sym(C (I + dt C)^-1) + skew(C), the part of S = sym(C) bounded.
+
+    By |S| max(J, 1)^(1/3) where matter is dilated, and by |S| where it exceeds a rate.
+    """
     unit, skew = np.eye(3), 0.5 * (C - C.transpose(0, 2, 1))
     S, moved = C - skew, C @ np.linalg.inv(unit + dt * C)
     J, dilated = 1.0 + j, (1.0 + j) * np.linalg.det(unit + dt * S)
     free = S @ np.linalg.inv(unit + dt * S)
-    bound = np.linalg.norm(S, axis=(1, 2)) * (np.maximum(J, 1.0) / np.maximum(dilated, 1e-300)) ** (1.0 / 3.0)
+    fast = np.linalg.norm(S, axis=(1, 2)) > rate
+    dilation = np.where(fast, 1.0, np.maximum(dilated, 1e-300) / np.maximum(J, 1.0))
+    bound = np.linalg.norm(S, axis=(1, 2)) * dilation ** (-1.0 / 3.0)
     factor = np.minimum(1.0, bound / np.maximum(np.linalg.norm(free, axis=(1, 2)), 1e-300))
-    excess = np.where(dilated > 1.0, 1.0 - factor, 0.0)[:, None, None] * free
+    excess = np.where((dilated > 1.0) | fast, 1.0 - factor, 0.0)[:, None, None] * free
     return np.asarray(0.5 * (moved + moved.transpose(0, 2, 1)) - excess + skew)

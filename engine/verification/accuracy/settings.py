@@ -26,7 +26,7 @@ FINE_STEPS = 16000
 Settings = Mapping[str, tuple[Setting, ...]]
 """Values to try, by dotted key of a scene."""
 
-COMMON: Settings = {"numerics.cfl": (0.1, 0.25, 0.5, 0.9), "numerics.precision": ("f64", "f32")}
+COMMON: Settings = {"numerics.cfl": (0.1, 0.3, 0.6, 0.9), "numerics.precision": ("f64", "f32")}
 CELLS: Settings = {"numerics.particles_per_cell": (2.0, 4.0, 8.0)}
 GRAVITY: Settings = {
     "physics.gravity.interval": (5.0, 10.0, 20.0, 40.0, 80.0),

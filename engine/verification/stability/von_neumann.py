@@ -64,15 +64,16 @@ class Block:
         """Particles of a cell along its edges."""
         return " x ".join(f"{n / CELLS:g}" for n in self.lattice)
 
-    def scene(self, cfl: float) -> Scene:
-        """Return the block at a Courant number [-], also one that validation refuses."""
+    def scene(self, courant: float) -> Scene:
+        """Return the block at steps of c dt/dx with the longitudinal speed c, also ones that validation refuses."""
         edge = float(CELLS)
         per_cell = float(np.prod(self.lattice)) / CELLS**3
         physics = Physics(strength=False, fracture=None, gravity=None)
         box = Box(size=(edge,) * 3, lattice=self.lattice, position=(0.5 * edge,) * 3)
         numerics = Numerics(particles_per_cell=per_cell)
         scene = Scene(bodies=(box,), period=(edge,) * 3, end_time=1e6, physics=physics, numerics=numerics)
-        return altered(scene, "numerics.cfl", cfl)
+        rock = box.material
+        return altered(scene, "numerics.cfl", courant * rock.signal_speed / rock.longitudinal_speed)
 
     def limit(self) -> Limit:
         """Return both limits; Taichi must have been started."""

@@ -6,7 +6,7 @@ import taichi as ti
 
 from engine.device.backend import mat3
 from engine.mpm.affine import affine_velocity
-from tests.helpers.device import Array, worst
+from tests.helpers.device import Array, norm, worst
 from tests.helpers.scenes import advance, body, scene, started
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -16,14 +16,14 @@ Scalars = ti.types.ndarray(dtype=ti.f64, ndim=1)
 
 
 @ti.kernel
-def affine(L: Matrices, dt: ti.f64, j: Scalars, result: Matrices):
+def affine(L: Matrices, dt: ti.f64, j: Scalars, rate: ti.f64, result: Matrices):
     for p in range(L.shape[0]):
-        result[p] = affine_velocity(L[p], dt, j[p])
+        result[p] = affine_velocity(L[p], dt, j[p], rate)
 
 
-def after_step(L: Array, dt: float, j: Array) -> Array:
+def after_step(L: Array, dt: float, j: Array, rate: float = np.inf) -> Array:
     result = np.zeros_like(L)
-    affine(L, dt, j, result)
+    affine(L, dt, j, rate, result)
     return result
 
 
@@ -72,6 +72,14 @@ def test_isotropic_flow_is_exact(rate, j):
 def test_isochoric_flow_of_dense_matter_is_exact():
     flow = 0.1 * np.diag([1.0, -1.0, 0.0])[None]
     assert worst(after_step(flow, 1.0, np.zeros(1)), exact(flow), 0.1) < 1e-15
+
+
+def test_motion_faster_than_the_filter_does_not_run_away_in_dense_matter():
+    """|S| stays where it would grow; a slower flow is exact, and so is one that slows down."""
+    j, flow = np.full(1, -0.5), 0.2 * np.diag([1.0, 0.5, 0.0])[None]
+    assert worst(after_step(-flow, 1.0, j, rate=0.1), exact(-flow) * norm(flow) / norm(exact(-flow)), 0.2) < 1e-15
+    assert worst(after_step(-flow, 1.0, j, rate=0.3), exact(-flow), 0.2) < 1e-15
+    assert worst(after_step(flow, 1.0, j, rate=0.1), exact(flow), 0.2) < 1e-15
 
 
 def test_a_thin_sheet_that_closes_does_not_run_away():

@@ -25,7 +25,7 @@ def test_one_step_equals_a_dense_grid(spread):
     alone = grid.alone[:, None]
     v = np.where(alone, state["v"] + kick.v, q.v)
     spin = 0.5 * (state["C"] - state["C"].transpose(0, 2, 1))
-    C = np.where(alone[..., None], spin, affine_velocity(q.C, dt, state["j"]))
+    C = np.where(alone[..., None], spin, affine_velocity(q.C, dt, state["j"], 1.0 / dt))
     found = simulation.particles.read("x", "v", "C")
     assert worst(found["v"], v, lengths(v) + 1.0) < 1e-12
     assert worst(found["x"], state["x"] + dt * v, given.dx) < 1e-12

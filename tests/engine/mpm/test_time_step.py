@@ -3,21 +3,23 @@ import pytest
 
 from engine.device import backend
 from engine.simulation.simulation import Simulation
-from tests.helpers.oracle import LONGITUDINAL, RHO0, G, squared_sound_speed
-from tests.helpers.scenes import RUBBLE, body, one_step, scene, started
+from engine.verification.harness import altered
+from tests.helpers.device import Array
+from tests.helpers.oracle import RHO0, G, squared_sound_speed
+from tests.helpers.scenes import RUBBLE, body, one_step, scene, spline, started
 
-LONGITUDINAL_SPEED = float(np.sqrt(LONGITUDINAL / RHO0))
+SIGNAL_SPEED = float(np.sqrt(3.0 * 2.67e10 / RHO0))
 
 
 @pytest.mark.usefixtures("taichi")
 def test_the_time_step_obeys_the_tightest_of_its_limits():
     given = scene(body())
     simulation, dx = started(given), given.dx
-    x, first = simulation.particles.read("x")["x"], 0.5 * dx / LONGITUDINAL_SPEED
+    x, reach = simulation.particles.read("x")["x"], given.numerics.cfl * dx
     gradient = np.tile(0.3 * np.eye(3), (100, 1, 1))
     limits = [
-        ({}, first),
-        ({"v": np.tile([3000.0, 0.0, 4000.0], (100, 1))}, 0.5 * dx / (LONGITUDINAL_SPEED + 5000.0)),
+        ({}, reach / SIGNAL_SPEED),
+        ({"v": np.tile([3000.0, 0.0, 4000.0], (100, 1))}, reach / (SIGNAL_SPEED + 5000.0)),
         ({"v": x @ gradient[0], "C": gradient}, 0.3 / (0.3 * np.sqrt(3.0))),
     ]
     for state, expected in limits:
@@ -31,7 +33,7 @@ def test_the_time_step_obeys_the_tightest_of_its_limits():
 def test_strong_gravity_shortens_the_time_step():
     given = scene(body(), physics={**RUBBLE, "uniform_gravity": (0.0, -1e4, 0.0)})
     # at rest after the first kick, which is that of half a step
-    first = 0.5 * given.dx / LONGITUDINAL_SPEED
+    first = given.numerics.cfl * given.dx / SIGNAL_SPEED
     simulation = started(given, v=np.tile([0.0, 0.5e4 * first, 0.0], (100, 1)))
     one_step(simulation)
     assert 1.0 / simulation.clock.rate[None] == pytest.approx(np.sqrt(given.dx / 1e4), rel=1e-2)
@@ -42,7 +44,7 @@ def test_viscosity_and_the_courant_number_shorten_the_time_step():
     viscous = {"fracture": None, "gravity": None, "viscosity": {"shear": 1e9, "bulk": 2e9}}
     given = scene(body(), physics=viscous, numerics={"cfl": 0.2})
     simulation = started(given)
-    assert one_step(simulation) == pytest.approx(0.2 * given.dx / LONGITUDINAL_SPEED, rel=1e-4)
+    assert one_step(simulation) == pytest.approx(0.2 * given.dx / SIGNAL_SPEED, rel=1e-4)
     assert 1.0 / simulation.clock.rate[None] == pytest.approx(given.dx**2 / (6.0 * 3e9), rel=1e-4)
 
 
@@ -93,5 +95,56 @@ def test_a_lonely_particle_counts_with_the_sound_speed_of_its_state(ballistic, j
     ballistic.start(j=np.array([j]), E=np.array([E]))
     one_step(ballistic)
     c2 = squared_sound_speed(np.array([1.0 / (1.0 + j) - 1.0]), np.array([E]))[0]
-    speed = np.sqrt(c2 + 4.0 / 3.0 * G / RHO0) + 500.0
-    assert 1.0 / ballistic.clock.rate[None] == pytest.approx(0.5 * ballistic.scene.dx / speed, rel=1e-9)
+    speed = np.sqrt(max(3.0 * c2, 2.0 * G / RHO0)) + 500.0
+    reach = ballistic.scene.numerics.cfl * ballistic.scene.dx
+    assert 1.0 / ballistic.clock.rate[None] == pytest.approx(reach / speed, rel=1e-9)
+
+
+def breathing(cfl: float, shear: bool, spread: float) -> float:
+    """Growth of a small random deformation of eight particles in 400 time steps; they lie within `spread` cells."""
+    physics = {"shear": shear, "strength": False, "fracture": None, "gravity": None}
+    given = altered(scene(body(particles=8, damage=0.0), physics=physics), "numerics.cfl", cfl)
+    generator, simulation = np.random.default_rng(1), Simulation(given)
+    x = given.dx * spread * generator.uniform(-0.5, 0.5, (8, 3))
+    simulation.start(x=x, C=1e-9 * generator.normal(size=(8, 3, 3)), v=np.zeros((8, 3)))
+    while simulation.step < 400:
+        simulation.advance(given.end_time)
+    return float(np.abs(simulation.particles.read("j")["j"]).max()) / (1e-9 * given.dx / SIGNAL_SPEED)
+
+
+@pytest.mark.usefixtures("taichi")
+@pytest.mark.parametrize("shear", [True, False])
+def test_particles_are_stable_however_they_lie(shear):
+    """A cluster that is small against a cell breathes at the highest frequency there is, 2 c/dx."""
+    assert all(breathing(0.98, shear, spread) < 10.0 for spread in (0.01, 1.0, 3.0))
+    assert breathing(1.02, shear, 0.01) > 1e6
+
+
+@pytest.mark.parametrize("moduli", [(1.0, 0.0), (26.7, 22.7), (0.01, 1.0)])
+@pytest.mark.parametrize("spread", [0.01, 1.5, 3.0])
+def test_no_arrangement_of_particles_oscillates_faster(moduli, spread):
+    """Largest eigenvalue of the stiffness of clouds, over 4 max(3 K, 2 G)/(rho0 dx^2)."""
+    K, G = moduli
+    generator = np.random.default_rng(1)
+    bound = 4.0 * max(3.0 * K, 2.0 * G)
+    largest = [highest_frequency2(spread * generator.uniform(size=(count, 3)), K, G) for count in (1, 2, 5, 20)]
+    assert max(largest) <= bound * (1.0 + 1e-12)
+    assert largest[0] == pytest.approx(bound, rel=1e-12)
+
+
+def highest_frequency2(x: Array, K: float, G: float) -> float:
+    """Square of the highest frequency of particles of unit mass and density on a grid of unit spacing."""
+    nodes = np.stack(np.meshgrid(*[np.arange(-2, 6)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    offset = nodes[None] - x[:, None]
+    W = spline(offset).prod(axis=2)
+    near = W.sum(axis=0) > 0.0
+    W, D = W[:, near], 4.0 * (W[..., None] * offset)[:, near]
+    unit = np.eye(3)
+    L = np.einsum("ac,pib->pabic", unit, D)
+    e = 0.5 * (L + L.transpose(0, 2, 1, 3, 4))
+    trace = np.einsum("paaic->pic", e)
+    s = e - np.einsum("ab,pic->pabic", unit, trace) / 3.0
+    n = 3 * W.shape[1]
+    stiffness = K * np.einsum("pic,pjd->icjd", trace, trace) + 2.0 * G * np.einsum("pabic,pabjd->icjd", s, s)
+    root = np.repeat(W.sum(axis=0) ** -0.5, 3)
+    return float(np.linalg.eigvalsh(root[:, None] * stiffness.reshape(n, n) * root)[-1])

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from engine.scene.material import named
-from engine.simulation.bounds import compression_limit, energy_growth, keeps_energy, keeps_momentum, momentum_drift
+from engine.simulation.bounds import (
+    compression_limit,
+    energy_growth,
+    keeps_energy,
+    keeps_momentum,
+    largest_energy_change,
+    momentum_drift,
+)
 from engine.simulation.conservation import Row
 from tests.helpers.scenes import body, scene
 
@@ -34,6 +41,15 @@ def test_a_scene_at_rest_measures_its_growth_in_the_round_off_of_sound() -> None
     given = scene(body())
     scale = np.finfo(np.float64).eps * given.materials[0].longitudinal_speed ** 2
     assert energy_growth(given, row(kinetic_energy=scale), row()) == pytest.approx(1.0)
+
+
+def test_energy_may_change_by_the_square_of_the_size_of_cells() -> None:
+    """(dx/R)^2/15 of the smallest body, from 1e-3, where bodies are well resolved, and 44 % where one is a particle."""
+    big, small = body(radius=50e3, particles=4000), body(radius=5e3, particles=500, position=(1e5, 0.0, 0.0))
+    given = scene(big, small)
+    assert largest_energy_change(given) == pytest.approx((given.dx / 50e3) ** 2 * 4.0 / 15.0, rel=1e-12)
+    assert largest_energy_change(scene(body(particles=100_000))) == 1e-3
+    assert largest_energy_change(scene(big, body(particles=1, position=(1e5, 0.0, 0.0)))) == pytest.approx((16.0 / 3.0 * np.pi) ** (2.0 / 3.0) / 15.0)
 
 
 def test_drift_of_momentum_has_no_direction() -> None:
