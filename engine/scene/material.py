@@ -108,7 +108,7 @@ class Material(Frozen):
 
     @property
     def signal_speed(self) -> float:
-        """Speed sqrt(max(3 K, 2 G)/rho0) [m/s] that limits time steps at the reference state (physics.md, section 1)."""
+        """Speed sqrt(max(3 K, 2 G)/rho0) [m/s] that limits time steps at rest (engine/physics.md, section 1)."""
         return float((max(3.0 * self.eos.bulk_modulus(), 2.0 * self.shear_modulus) / self.rho0) ** 0.5)
 
     @property

@@ -119,7 +119,10 @@ class Numerics(Frozen):
         Literal["filtered", "apic"], key("transfer between particles and grid; `apic` is there to compare with")
     ] = "filtered"
     filter_time: Annotated[
-        Positive, key("time in which motion that the grid cannot represent decays, in dx/(speed of sound + speed of bodies)", "1")
+        Positive,
+        key(
+            "time in which motion that the grid cannot represent decays, in dx/(speed of sound + speed of bodies)", "1"
+        ),
     ] = 1.0
     transfer_heat: Annotated[bool, key("whether internal energy takes up what the filter dissipates")] = True
     precision: Annotated[Precision, key("precision of numbers on the device")] = "f64"

@@ -71,7 +71,7 @@ def largest_energy_change(scene: Scene) -> float:
     """
     fewest = min(body.count for body in scene.bodies)
     cell = (4.0 / 3.0 * math.pi * scene.numerics.particles_per_cell / fewest) ** (1.0 / 3.0)
-    return max(cell**2 / 15.0, LEAST_ENERGY_CHANGE)
+    return float(max(cell**2 / 15.0, LEAST_ENERGY_CHANGE))
 
 
 def energy_growth(scene: Scene, row: Row, start: Row) -> float:

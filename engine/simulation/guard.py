@@ -17,8 +17,8 @@ from engine.simulation.bounds import (
     dissipates,
     energy_growth,
     keeps_energy,
-    largest_energy_change,
     keeps_momentum,
+    largest_energy_change,
     momentum_drift,
     speed_scale,
 )

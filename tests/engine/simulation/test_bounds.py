@@ -49,7 +49,9 @@ def test_energy_may_change_by_the_square_of_the_size_of_cells() -> None:
     given = scene(big, small)
     assert largest_energy_change(given) == pytest.approx((given.dx / 50e3) ** 2 * 4.0 / 15.0, rel=1e-12)
     assert largest_energy_change(scene(body(particles=100_000))) == 1e-3
-    assert largest_energy_change(scene(big, body(particles=1, position=(1e5, 0.0, 0.0)))) == pytest.approx((16.0 / 3.0 * np.pi) ** (2.0 / 3.0) / 15.0)
+    assert largest_energy_change(scene(big, body(particles=1, position=(1e5, 0.0, 0.0)))) == pytest.approx(
+        (16.0 / 3.0 * np.pi) ** (2.0 / 3.0) / 15.0
+    )
 
 
 def test_drift_of_momentum_has_no_direction() -> None:
