@@ -83,7 +83,7 @@ class Constitution:
         self.energy.work(p, half_work, 0.5 / rho0 * ddot(tau, strain))
         self.dissipate(p, before, tau, J * stress, strain)
         self.damage.grow(p, s / J, P, dt, body)
-        return self.fastest(c2, body), diffusivity
+        return self.signal_speed_of(c2, body), diffusivity
 
     @ti.func
     def dissipate(self, p, before, after, viscous, strain):
@@ -123,13 +123,13 @@ class Constitution:
         """Return the signal speed [m/s] in the present state of particle p."""
         body, J = self.particles.body[p], 1.0 + self.particles.j[p]
         _, c2 = self.eos.evaluate(p, -self.particles.j[p] / J, self.energy.after(p, 0.0), body)
-        return self.fastest(c2, body)
+        return self.signal_speed_of(c2, body)
 
     @ti.func
-    def fastest(self, c2, body):
+    def signal_speed_of(self, c2, body):
         """Return the signal speed sqrt(max(3 c^2, 2 G/rho0)) [m/s].
 
-        No particles, however they lie, oscillate faster than 2 of it over dx (engine/physics.md, section 1).
+        Particles oscillate with at most twice this over dx, however they lie (engine/physics.md, section 1).
 
         Args:
             c2: squared speed of sound of the equation of state [m^2/s^2].

@@ -12,9 +12,9 @@ SMALLEST = 1e-30
 def affine_velocity(C, dt, j, rate):
     """Return the affine velocity [1/s] of matter that has moved freely for dt: sym(C (I + dt C)^-1) + skew(C).
 
-    The skew part keeps angular momentum. The part that strain S = sym(C) sets, S (I + dt S)^-1, is scaled so that
-    |S| max(J, 1)^(1/3) never grows in dilated matter, J > 1, and |S| never grows where it exceeds the rate of the
-    filter: nothing opposes what a particle remembers of itself and the grid does not represent.
+    The skew part keeps angular momentum. The part that strain S = sym(C) sets, S (I + dt S)^-1, is scaled: in dilated
+    matter, J > 1, so that |S| max(J, 1)^(1/3) never grows, and where |S| exceeds the rate of the filter, so that |S|
+    never grows. Nothing opposes what a particle remembers of itself and the grid does not represent.
 
     Args:
         C: affine velocity [1/s].
@@ -25,7 +25,9 @@ def affine_velocity(C, dt, j, rate):
     S, after, J = symmetric(C), symmetric(moved(C, dt)), 1.0 + j
     dilated, fast = J * (1.0 + determinant_increment(dt * S)), norm_squared(S) > rate * rate
     if dilated > 1.0 or fast:
-        free, dilation = moved(S, dt), 1.0 if fast else dilated / ti.max(J, 1.0)
+        free, dilation = moved(S, dt), dilated / ti.max(J, 1.0)
+        if fast:
+            dilation = ti.max(dilation, 1.0)
         growth = norm_squared(free) / ti.max(norm_squared(S), SMALLEST)
         if growth**3 * dilation**2 > 1.0:
             after -= (1.0 - dilation ** (-1.0 / 3.0) / ti.sqrt(growth)) * free

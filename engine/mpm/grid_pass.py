@@ -23,7 +23,7 @@ class GridPass:
         stencil: nodes of the particles.
         exchange: what a particle gives and takes.
         clock: whether the step runs, and how long the next one may be.
-        cfl: Courant number: time step in units of the time a wave needs for one cell.
+        cfl: Courant number: time step in units of the time a signal needs for one cell [-].
     """
 
     def __init__(self, stencil: Stencil, exchange: Exchange, clock: Clock, cfl: float) -> None:

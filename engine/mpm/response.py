@@ -81,7 +81,7 @@ class Response:
     def rest(self, p, dx):
         """Leave particle p, which shares no node with another, undeformed; returns its limits.
 
-        They contain its speed of sound, because the length of the step in which it meets others
+        They contain its signal speed, because the length of the step in which it meets others
         follows from the one before.
         """
         self.constitution.rest(p)

@@ -55,7 +55,8 @@ def rate_of(limits, cfl, dx):
     """
     wave, deformation = limits.speed / (cfl * dx), ti.sqrt(limits.gradient2) / LARGEST_INCREMENT
     fall, diffusion = ti.sqrt(ti.sqrt(limits.acceleration2) / dx), 6.0 * limits.diffusivity / (dx * dx)
-    return ti.max(wave, deformation, fall, diffusion)
+    # waves and diffusion together: viscous stress is that of the step before
+    return ti.max(wave + diffusion, deformation, fall)
 
 
 @ti.func

@@ -16,7 +16,7 @@ class Transfer:
         stencil: nodes of the particles.
         scheme: what particles exchange with the grid.
         clock: time and time step.
-        cfl: Courant number: time step in units of the time a wave needs for one cell.
+        cfl: Courant number: time step in units of the time a signal needs for one cell [-].
 
     Attributes:
         stages: of a step, in order.

@@ -11,7 +11,7 @@ from engine.scene.scene import Scene
 from engine.simulation.conservation import Row
 
 LEAST_ENERGY_CHANGE = 1e-3
-"""Change of the total energy that every run may have, in the measure of `energy_growth` [-]."""
+"""Change of the total energy that a run without shocks may have, in the measure of `energy_growth` [-]."""
 
 LARGEST_COMPRESSION = 1e6
 """Compression rho/rho0 [-] above which a bound counts as infinite."""
@@ -24,26 +24,41 @@ def speed_scale(scene: Scene, start: Row) -> float:
         scene: what is simulated.
         start: first row of its history.
     """
+    bodies = 2.0 * max(float(np.linalg.norm(b.velocity) + np.linalg.norm(b.spin) * b.reach) for b in scene.bodies)
     energy = float(start["kinetic_energy"] + abs(start["internal_energy"]) + start["elastic_energy"])
     energy += _rounding(scene, start)
+    return math.sqrt(bodies**2 + 2.0 * energy / float(start["mass"]) + _fall(scene) ** 2)
+
+
+def _fall(scene: Scene) -> float:
+    """Speed [m/s] that gravity can add.
+
+    Self-gravity: of a fall from rest at infinity to the centre of one ball that has all mass and the softening radius.
+    Uniform gravity: of a fall for the whole simulated time.
+    """
+    gravity = scene.physics.gravity
+    if gravity:
+        mass = sum(body.mass for body in scene.bodies)
+        return math.sqrt(3.0 * G_NEWTON * mass / (gravity.softening * scene.spacing))
     pull = float(np.linalg.norm(scene.physics.uniform_gravity or 0.0))
-    fall = pull * (scene.end_time - scene.start_time)
-    return math.hypot(speed_of_motion(scene), math.sqrt(2.0 * energy / float(start["mass"])), fall)
+    return pull * (scene.end_time - scene.start_time)
 
 
 def speed_of_motion(scene: Scene) -> float:
-    """Return the speed [m/s] that bodies have relative to each other, and self-gravity can add.
-
-    Self-gravity adds that of a fall from rest at infinity to the centre of one ball that has all mass and the
-    softening radius.
+    """Return the speed v_m [m/s] at which bodies meet, with rotation and self-gravity (physics.md, section 1).
 
     Args:
         scene: what is simulated.
     """
-    bodies = 2.0 * max(float(np.linalg.norm(b.velocity) + np.linalg.norm(b.spin) * b.reach) for b in scene.bodies)
-    gravity, mass = scene.physics.gravity, sum(body.mass for body in scene.bodies)
-    fall = math.sqrt(3.0 * G_NEWTON * mass / (gravity.softening * scene.spacing)) if gravity else 0.0
-    return math.hypot(bodies, fall)
+    mass = np.array([body.mass for body in scene.bodies])
+    velocity = np.array([body.velocity for body in scene.bodies])
+    relative = velocity - mass @ velocity / mass.sum()
+    turning = [float(np.linalg.norm(body.spin)) * body.reach for body in scene.bodies]
+    bodies = 2.0 * float((np.linalg.norm(relative, axis=1) + turning).max())
+    volume = sum(body.volume for body in scene.bodies)
+    radius = (0.75 * volume / math.pi) ** (1.0 / 3.0)
+    escape = math.sqrt(2.0 * G_NEWTON * float(mass.sum()) / radius) if scene.physics.gravity else 0.0
+    return math.hypot(bodies, escape)
 
 
 def compression_limit(material: Material, energy: float) -> float:
@@ -64,14 +79,16 @@ def compression_limit(material: Material, energy: float) -> float:
 def largest_energy_change(scene: Scene) -> float:
     """Return the largest change of the total energy in the measure of `energy_growth` [-].
 
-    It is of second order in the size of cells: (dx/R)^2/15 of a sphere with as many particles as the smallest body.
+    It is of second order in the size of cells, (dx/R)^2/15 of a sphere with as many particles as the smallest body, and
+    at least 1e-3 (1 + v_m/c_l): behind shocks it is not.
 
     Args:
         scene: what is simulated.
     """
     fewest = min(body.count for body in scene.bodies)
     cell = (4.0 / 3.0 * math.pi * scene.numerics.particles_per_cell / fewest) ** (1.0 / 3.0)
-    return float(max(cell**2 / 15.0, LEAST_ENERGY_CHANGE))
+    mach = speed_of_motion(scene) / min(material.longitudinal_speed for material in scene.materials)
+    return float(max(cell**2 / 15.0, LEAST_ENERGY_CHANGE * (1.0 + mach)))
 
 
 def energy_growth(scene: Scene, row: Row, start: Row) -> float:

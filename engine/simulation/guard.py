@@ -49,6 +49,7 @@ class Guard:
     Attributes:
         speed: largest speed [m/s].
         compression: largest rho/rho0 [-].
+        energy_change: largest change of the total energy in the measure of `energy_growth` [-].
         momentum: scale of the total momentum [kg m/s].
         shortest_step: shortest time step [s].
     """
@@ -58,6 +59,7 @@ class Guard:
         scale, materials = speed_scale(scene, start), set(scene.materials)
         self.speed = SPEED_FACTOR * scale
         self.compression = max(compression_limit(material, 0.5 * self.speed**2) for material in materials)
+        self.energy_change = largest_energy_change(scene)
         self.momentum = float(start["mass"]) * (scale + max(material.longitudinal_speed for material in materials))
 
     def check(self, row: Row, state: Arrays) -> None:
@@ -109,8 +111,8 @@ class Guard:
             raise stop("change of total momentum [kg m/s]", drift, f"at most {allowed:.3g}", time, advice=advice)
 
     def _check_energy(self, row: Row, time: float) -> None:
-        growth, most = energy_growth(self.scene, row, self.start), largest_energy_change(self.scene)
-        least = -1.0 if dissipates(self.scene) else -most
+        growth, most = energy_growth(self.scene, row, self.start), self.energy_change
+        least = -1.0 if dissipates(self.scene) else -most  # all energy may be lost
         if keeps_energy(self.scene) and not least <= growth <= most:
             allowed = f"between {least:.3g} and {most:.3g}"
             quantity = "growth of total energy, as a fraction of all energies"

@@ -45,7 +45,7 @@ class MaterialPoint:
 
     Attributes:
         particles: their state.
-        signal_speed: of the time step after the last one [m/s], shape [count].
+        signal_speed: speed that limits the next time step [m/s], shape [count].
     """
 
     def __init__(

@@ -51,7 +51,7 @@ class StretchConstitution(Constitution):
         self.F[p], self.particles.j[p], self.particles.tau[p] = F, J - 1.0, pack(tau)
         self.energy.work(p, half_work, 0.5 / rho0 * ddot(tau, strain))
         self.damage.damage_root[p] = self.grow(largest / J - P, dt, p)
-        return self.fastest(c2, body), 0.0
+        return self.signal_speed_of(c2, body), 0.0
 
     @ti.func
     def shear_part(self, F, J, P, E, p):

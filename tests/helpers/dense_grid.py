@@ -74,7 +74,7 @@ def affine_velocity(C: Array, dt: float, j: Array, rate: float) -> Array:
     J, dilated = 1.0 + j, (1.0 + j) * np.linalg.det(unit + dt * S)
     free = S @ np.linalg.inv(unit + dt * S)
     fast = np.linalg.norm(S, axis=(1, 2)) > rate
-    dilation = np.where(fast, 1.0, np.maximum(dilated, 1e-300) / np.maximum(J, 1.0))
+    dilation = np.maximum(dilated / np.maximum(J, 1.0), np.where(fast, 1.0, 1e-300))
     bound = np.linalg.norm(S, axis=(1, 2)) * dilation ** (-1.0 / 3.0)
     factor = np.minimum(1.0, bound / np.maximum(np.linalg.norm(free, axis=(1, 2)), 1e-300))
     excess = np.where((dilated > 1.0) | fast, 1.0 - factor, 0.0)[:, None, None] * free

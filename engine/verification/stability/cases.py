@@ -174,7 +174,7 @@ def _flows() -> list[ExtremeCase]:
             "flow", "rubble expands to J = 50", alone(1350.0, physics=LOOSE, damage=1.0), states.expanding(2e-3)
         ),
         ExtremeCase("flow", "rubble flows together", alone(500.0, physics=LOOSE, damage=1.0), states.expanding(-2e-3)),
-        # infinite density: the passage is inside one cell
+        # in the point the density is infinite
         ExtremeCase(
             "flow",
             "dust falls through a point",

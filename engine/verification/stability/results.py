@@ -32,8 +32,11 @@ ATTRIBUTES = {
     "compression": ("highest rho/rho0", "1"),
     "compression_bound": ("rho/rho0 at which the guard stops", "1"),
     "nearest": ("largest ratio of a measure to its bound", "1"),
-    "limit": ("largest stable c dt/dx of elastic waves, measured by bisection", "1"),
-    "limit_theory": ("largest stable c dt/dx of elastic waves, from the matrix of a step", "1"),
+    "limit": ("largest stable c dt/dx of elastic waves of the longitudinal speed c, measured by bisection", "1"),
+    "limit_theory": (
+        "largest stable c dt/dx of elastic waves of the longitudinal speed c, from the matrix of a step",
+        "1",
+    ),
 }
 
 

@@ -82,6 +82,17 @@ def test_motion_faster_than_the_filter_does_not_run_away_in_dense_matter():
     assert worst(after_step(flow, 1.0, j, rate=0.1), exact(flow), 0.2) < 1e-15
 
 
+def test_fast_motion_of_dilated_matter_obeys_both_bounds():
+    """|S| max(J, 1)^(1/3) where an expansion dilates it, |S| where a collapse compresses it."""
+    j, flow = np.full(1, 3.0), np.diag([0.4, 0.3, -0.25])[None]
+    for given, J in (
+        (flow, 4.0 * np.linalg.det(np.eye(3) + flow[0])),
+        (-flow, 4.0 * np.linalg.det(np.eye(3) - flow[0])),
+    ):
+        found = after_step(given, 1.0, j, rate=0.1)
+        assert norm(found) <= norm(given) * min(1.0, (4.0 / J) ** (1.0 / 3.0)) * (1.0 + 1e-14)
+
+
 def test_a_thin_sheet_that_closes_does_not_run_away():
     """One layer of rubble has a rate of thinning S that no particles' motion carries: |S| J^(1/3) never grows."""
     rate, J, count = -1e-3, 4.0, 100

@@ -121,7 +121,7 @@ def damping_rate(given: Scene, cells: int, time: float) -> tuple[float, float]:
 @pytest.mark.usefixtures("taichi")
 @pytest.mark.parametrize("cells", [4, 8])
 def test_a_shear_wave_decays_at_the_rate_of_the_filter_whatever_the_time_step(cells):
-    """(1 - g)^2 / (filter_time dx/c): g is that of one projection."""
+    """(1 - g)^2 over filter_time dx/c_l, of bodies at rest: g is that of one projection."""
     rates = []
     for cfl in (0.2, 0.8):
         given = shear_column(cells, 2, cfl=cfl, filter_time=2.0)

@@ -45,7 +45,8 @@ def test_viscosity_and_the_courant_number_shorten_the_time_step():
     given = scene(body(), physics=viscous, numerics={"cfl": 0.2})
     simulation = started(given)
     assert one_step(simulation) == pytest.approx(0.2 * given.dx / SIGNAL_SPEED, rel=1e-4)
-    assert 1.0 / simulation.clock.rate[None] == pytest.approx(given.dx**2 / (6.0 * 3e9), rel=1e-4)
+    wave, diffusion = SIGNAL_SPEED / (0.2 * given.dx), 6.0 * 3e9 / given.dx**2
+    assert simulation.clock.rate[None] == pytest.approx(wave + diffusion, rel=1e-4)
 
 
 @pytest.mark.usefixtures("taichi")
@@ -100,9 +101,10 @@ def test_a_lonely_particle_counts_with_the_sound_speed_of_its_state(ballistic, j
     assert 1.0 / ballistic.clock.rate[None] == pytest.approx(reach / speed, rel=1e-9)
 
 
-def breathing(cfl: float, shear: bool, spread: float) -> float:
+def breathing(cfl: float, shear: bool, spread: float, viscosity: float = 0.0) -> float:
     """Growth of a small random deformation of eight particles in 400 time steps; they lie within `spread` cells."""
-    physics = {"shear": shear, "strength": False, "fracture": None, "gravity": None}
+    physics: dict[str, object] = {"shear": shear, "strength": False, "fracture": None, "gravity": None}
+    physics |= {"viscosity": {"bulk": viscosity}} if viscosity else {}
     given = altered(scene(body(particles=8, damage=0.0), physics=physics), "numerics.cfl", cfl)
     generator, simulation = np.random.default_rng(1), Simulation(given)
     x = given.dx * spread * generator.uniform(-0.5, 0.5, (8, 3))
@@ -118,6 +120,14 @@ def test_particles_are_stable_however_they_lie(shear):
     """A cluster that is small against a cell breathes at the highest frequency there is, 2 c/dx."""
     assert all(breathing(0.98, shear, spread) < 10.0 for spread in (0.01, 1.0, 3.0))
     assert breathing(1.02, shear, 0.01) > 1e6
+
+
+@pytest.mark.usefixtures("taichi")
+def test_particles_with_viscosity_are_stable_however_they_lie():
+    """The viscosity at which waves and diffusion alone allow the same step; then their rates add."""
+    dx = scene(body(particles=8)).dx
+    viscosity = SIGNAL_SPEED * dx / 6.0
+    assert all(breathing(0.98, True, spread, viscosity) < 10.0 for spread in (0.01, 1.0, 3.0))
 
 
 @pytest.mark.parametrize("moduli", [(1.0, 0.0), (26.7, 22.7), (0.01, 1.0)])

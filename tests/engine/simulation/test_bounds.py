@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from engine.constants import G_NEWTON
 from engine.scene.material import named
 from engine.simulation.bounds import (
     compression_limit,
@@ -11,6 +12,7 @@ from engine.simulation.bounds import (
     keeps_momentum,
     largest_energy_change,
     momentum_drift,
+    speed_of_motion,
 )
 from engine.simulation.conservation import Row
 from tests.helpers.scenes import body, scene
@@ -48,10 +50,23 @@ def test_energy_may_change_by_the_square_of_the_size_of_cells() -> None:
     big, small = body(radius=50e3, particles=4000), body(radius=5e3, particles=500, position=(1e5, 0.0, 0.0))
     given = scene(big, small)
     assert largest_energy_change(given) == pytest.approx((given.dx / 50e3) ** 2 * 4.0 / 15.0, rel=1e-12)
-    assert largest_energy_change(scene(body(particles=100_000))) == 1e-3
+    fast = body(particles=100_000, velocity=(0.0, 10e3, 0.0)), body(particles=100_000, position=(2e5, 0.0, 0.0))
+    assert largest_energy_change(scene(fast[1])) == 1e-3
+    assert largest_energy_change(scene(*fast)) == pytest.approx(1e-3 + 10.0 / named("basalt").longitudinal_speed)
     assert largest_energy_change(scene(big, body(particles=1, position=(1e5, 0.0, 0.0)))) == pytest.approx(
         (16.0 / 3.0 * np.pi) ** (2.0 / 3.0) / 15.0
     )
+
+
+def test_the_speed_of_motion_is_that_at_which_bodies_meet() -> None:
+    """Twice the fastest body and its rotation in the frame of all mass, and the speed of escape from all mass."""
+    left = body(velocity=(100.0, 50.0, 0.0), spin=(0.0, 0.0, 1e-3))
+    right = body(velocity=(-100.0, 50.0, 0.0), position=(2e5, 0.0, 0.0))
+    assert speed_of_motion(scene(body(velocity=(100.0, 0.0, 0.0)))) == 0.0
+    assert speed_of_motion(scene(left, right)) == pytest.approx(2.0 * (100.0 + 50.0), rel=1e-12)
+    heavy = scene(left, right, physics={"fracture": None, "gravity": {}})
+    escape2 = 2.0 * G_NEWTON * sum(b.mass for b in heavy.bodies) / (2.0 ** (1.0 / 3.0) * 50e3)
+    assert speed_of_motion(heavy) == pytest.approx(np.sqrt(300.0**2 + escape2), rel=1e-12)
 
 
 def test_drift_of_momentum_has_no_direction() -> None:
