@@ -45,8 +45,6 @@ FULL: dict[str, Problem] = {
     "collapse": Collapse(particles=(2000, 16000)),
     "cliff": Cliff(cells=15),
     "rubble": Rubble(particles=1500),
-    "ellipsoid": Ellipsoid(particles=(2000, 8000)),
-    "shear_jump": ShearJump(steps=(100, 1000, 10000)),
     "slope": Slope(cells=(48, 96)),
     "stiffness": Stiffness(),
     "runout": Runout(),

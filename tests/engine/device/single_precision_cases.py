@@ -68,7 +68,7 @@ def test_gravity_of_bodies_of_any_size(R, opening):
 
 
 def test_the_ledger_sums_in_double_precision():
-    simulation = advance(started(rubble_collision(**SINGLE)), 10)
+    simulation = advance(started(rubble_collision(**SINGLE)), 80)
     state = simulation.particles.read()
     assert {values.dtype.name for values in state.values()} == {"float64", "int32"}
     work = -float(np.sum(state["mass"] * state["half_step_work"]))
