@@ -13,6 +13,9 @@ from engine.simulation.conservation import Row
 LEAST_ENERGY_CHANGE = 1e-3
 """Change of the total energy that a run without shocks may have, in the measure of `energy_growth` [-]."""
 
+SHOCK_ENERGY_CHANGE = 2e-2
+"""The same of a run of any speed in many particles."""
+
 LARGEST_COMPRESSION = 1e6
 """Compression rho/rho0 [-] above which a bound counts as infinite."""
 
@@ -79,8 +82,8 @@ def compression_limit(material: Material, energy: float) -> float:
 def largest_energy_change(scene: Scene) -> float:
     """Return the largest change of the total energy in the measure of `energy_growth` [-].
 
-    It is of second order in the size of cells, (dx/R)^2/15 of a sphere with as many particles as the smallest body, and
-    at least 1e-3 (1 + v_m/c_l): behind shocks it is not.
+    It is of second order in the size of cells, (dx/R)^2/15 of a sphere with as many particles as the smallest body. As
+    it is not behind shocks, it is at least 1e-3 (1 + v_m/c_l), or 2e-2 if that is less.
 
     Args:
         scene: what is simulated.
@@ -88,7 +91,7 @@ def largest_energy_change(scene: Scene) -> float:
     fewest = min(body.count for body in scene.bodies)
     cell = (4.0 / 3.0 * math.pi * scene.numerics.particles_per_cell / fewest) ** (1.0 / 3.0)
     mach = speed_of_motion(scene) / min(material.longitudinal_speed for material in scene.materials)
-    return float(max(cell**2 / 15.0, LEAST_ENERGY_CHANGE * (1.0 + mach)))
+    return float(max(cell**2 / 15.0, min(LEAST_ENERGY_CHANGE * (1.0 + mach), SHOCK_ENERGY_CHANGE)))
 
 
 def energy_growth(scene: Scene, row: Row, start: Row) -> float:

@@ -52,6 +52,8 @@ def test_energy_may_change_by_the_square_of_the_size_of_cells() -> None:
     assert largest_energy_change(given) == pytest.approx((given.dx / 50e3) ** 2 * 4.0 / 15.0, rel=1e-12)
     fast = body(particles=100_000, velocity=(0.0, 10e3, 0.0)), body(particles=100_000, position=(2e5, 0.0, 0.0))
     assert largest_energy_change(scene(fast[1])) == 1e-3
+    jet = body(particles=100_000, velocity=(0.0, 1e6, 0.0))
+    assert largest_energy_change(scene(jet, fast[1])) == 2e-2
     assert largest_energy_change(scene(*fast)) == pytest.approx(1e-3 + 10.0 / named("basalt").longitudinal_speed)
     assert largest_energy_change(scene(big, body(particles=1, position=(1e5, 0.0, 0.0)))) == pytest.approx(
         (16.0 / 3.0 * np.pi) ** (2.0 / 3.0) / 15.0
