@@ -5,6 +5,7 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
+from engine.arrays import Vector
 from engine.constants import G_NEWTON
 from engine.scene.material import Material
 from engine.scene.scene import Scene
@@ -27,10 +28,15 @@ def speed_scale(scene: Scene, start: Row) -> float:
         scene: what is simulated.
         start: first row of its history.
     """
-    bodies = 2.0 * max(float(np.linalg.norm(b.velocity) + np.linalg.norm(b.spin) * b.reach) for b in scene.bodies)
+    bodies = 2.0 * _fastest(scene, np.zeros(3))
     energy = float(start["kinetic_energy"] + abs(start["internal_energy"]) + start["elastic_energy"])
     energy += _rounding(scene, start)
     return math.sqrt(bodies**2 + 2.0 * energy / float(start["mass"]) + _fall(scene) ** 2)
+
+
+def _fastest(scene: Scene, frame: Vector) -> float:
+    """Highest speed [m/s] of the surface of a body, rotation included, in a frame that moves at a velocity [m/s]."""
+    return max(float(np.linalg.norm(b.velocity - frame) + np.linalg.norm(b.spin) * b.reach) for b in scene.bodies)
 
 
 def _fall(scene: Scene) -> float:
@@ -54,10 +60,7 @@ def speed_of_motion(scene: Scene) -> float:
         scene: what is simulated.
     """
     mass = np.array([body.mass for body in scene.bodies])
-    velocity = np.array([body.velocity for body in scene.bodies])
-    relative = velocity - mass @ velocity / mass.sum()
-    turning = [float(np.linalg.norm(body.spin)) * body.reach for body in scene.bodies]
-    bodies = 2.0 * float((np.linalg.norm(relative, axis=1) + turning).max())
+    bodies = 2.0 * _fastest(scene, mass @ np.array([body.velocity for body in scene.bodies]) / mass.sum())
     volume = sum(body.volume for body in scene.bodies)
     radius = (0.75 * volume / math.pi) ** (1.0 / 3.0)
     escape = math.sqrt(2.0 * G_NEWTON * float(mass.sum()) / radius) if scene.physics.gravity else 0.0
