@@ -33,8 +33,9 @@ class Ellipsoid:
     friction makes it rigid; one thicker than the static limit of its friction stays; one thinner contracts, as friction
     cannot bear its weight in the plane. The transfer keeps linear flows, so friction, gravity and surface are tested.
 
-    What is allowed is about twice what was measured. Spinning lens, worst error of F, at 500, 1,000, 2,000, 4,000 and
-    8,000 particles: 3.5, 1.9, 1.2, 0.79 and 0.49 %, second order in dx; at 2,000, cfl 0.25 and 0.9: 1.3 and 1.1 %.
+    What is allowed is about twice what was measured with `apic`. Spinning lens, worst error of F, at 500, 1,000, 2,000,
+    4,000 and 8,000 particles: 3.5, 1.9, 1.2, 0.79 and 0.49 %, second order in dx; at 2,000, cfl 0.25 and 0.9: 1.3 and
+    1.1 %.
     Contracting lens, up to 3,000 s: 0.5, 0.6, 0.5, 0.6 and 0.1 %, which depends on the arrangement of particles.
 
     Attributes:
