@@ -32,6 +32,10 @@ def friends_of_friends(position: Array, mass: Array, length: float) -> Integers:
     return np.argsort(order)[labels]
 
 
+OTHER_LENGTHS = {"mass_ratio_close": 1.2, "mass_ratio_wide": 1.8}
+"""Linking lengths [h] that show, by an outcome each, whether the largest remnant is a matter of that length."""
+
+
 @dataclass(frozen=True)
 class Clumps:
     """Clumps as point masses, the largest first.
@@ -47,9 +51,14 @@ class Clumps:
     velocity: Array
 
 
-def clumps_of(particles: Particles) -> Integers:
-    """Clump label of every particle at the standard linking length, shape [particle_count]."""
-    return friends_of_friends(particles.position, particles.mass, LINKING_LENGTH * particles.spacing)
+def clumps_of(particles: Particles, length: float = LINKING_LENGTH) -> Integers:
+    """Clump label of every particle, shape [particle_count].
+
+    Args:
+        particles: to link.
+        length: linking length in particle spacings [-].
+    """
+    return friends_of_friends(particles.position, particles.mass, length * particles.spacing)
 
 
 def largest_clump(particles: Particles) -> Particles:

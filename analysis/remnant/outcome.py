@@ -6,17 +6,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.remnant.conservation import drifts, heats, read_history
-from analysis.remnant.ellipsoid import THIN, bulk_density, ellipsoid_of, kurtosis
+from analysis.remnant.contact import contact_of
+from analysis.remnant.ellipsoid import THIN, Ellipsoid, bulk_density, ellipsoid_of, kurtosis
+from analysis.remnant.filled import filled_volume
 from analysis.remnant.flow import linear_flow
-from analysis.remnant.fragments import Clumps, as_points, bound_to_largest, clumps_of
+from analysis.remnant.fragments import OTHER_LENGTHS, Clumps, as_points, bound_to_largest, clumps_of
 from analysis.remnant.hull import hull_of
+from analysis.remnant.lobes import lobes_of
 from analysis.remnant.particles import Integers, Particles, read_particles, snapshots
 from analysis.remnant.settling import recent_changes
 from analysis.remnant.spin import spin_period
 from analysis.remnant.variables import DAMAGED, DRIFTS, UndescribedError, described
 from engine.errors import JobError, RunFault, SceneError
 from engine.job.directory import JobDirectory, JobState
-from engine.scene.scene import scene_in
+from engine.scene.scene import Scene, scene_in
 
 Numbers = dict[str, float]
 
@@ -137,6 +140,8 @@ def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Number
     last = drifts(history, scene).isel(time=-1)
     return described(
         _masses(clumps, bound, scene.bodies[0].mass)
+        | _other_lengths(particles, scene.bodies[0].mass)
+        | _contact(scene, particles.contact_time)
         | _ellipsoid(remnant)
         | _hull(remnant)
         | _interior(remnant)
@@ -157,9 +162,21 @@ def _masses(clumps: Clumps, bound: NDArray[np.bool_], target: float) -> Numbers:
     }
 
 
+def _other_lengths(particles: Particles, target: float) -> Numbers:
+    """Mass of the largest clump at other linking lengths, over the target's."""
+    labels = {name: clumps_of(particles, length) for name, length in OTHER_LENGTHS.items()}
+    return {name: float(particles.mass[label == 0].sum() / target) for name, label in labels.items()}
+
+
+def _contact(scene: Scene, time: float) -> Numbers:
+    met = contact_of(scene, time)
+    return {"contact_time": time, "contact_offset": met.offset, "contact_angle": met.angle}
+
+
 def _ellipsoid(remnant: Particles) -> Numbers:
     shape = ellipsoid_of(remnant.position, remnant.mass)
     extended = ellipsoid_of(remnant.position, remnant.mass, remnant.spacing)
+    mass, filled = float(remnant.mass.sum()), filled_volume(remnant.position, remnant.spacing)
     return {
         "b_over_a": shape.b_over_a,
         "c_over_a": shape.c_over_a,
@@ -167,9 +184,21 @@ def _ellipsoid(remnant: Particles) -> Numbers:
         **{f"axis_{name}": float(axis) for name, axis in zip("abc", shape.axes, strict=True)},
         "c_unresolved": float(shape.axes[2] < THIN * remnant.spacing),
         "kurtosis_a": kurtosis(remnant.position, remnant.mass, shape.directions[0]),
-        "bulk_density": bulk_density(float(remnant.mass.sum()), shape.volume),
-        "particle_density": bulk_density(float(remnant.mass.sum()), float((remnant.mass / remnant.rho).sum())),
+        "bulk_density": bulk_density(mass, shape.volume),
+        "particle_density": bulk_density(mass, float((remnant.mass / remnant.rho).sum())),
+        "filled_volume": filled,
+        "filled_density": bulk_density(mass, filled),
+        **_lobes(remnant, shape),
         "spin_period": spin_period(remnant.position, remnant.velocity, remnant.mass),
+    }
+
+
+def _lobes(remnant: Particles, shape: Ellipsoid) -> Numbers:
+    lobes = lobes_of(remnant.position, remnant.mass, shape.directions[0], remnant.spacing)
+    return {
+        "lobes": float(lobes.count),
+        "largest_lobe_fraction": float(lobes.mass[0] / remnant.mass.sum()),
+        "second_lobe_fraction": float(lobes.mass[1:2].sum() / remnant.mass.sum()),
     }
 
 

@@ -32,7 +32,8 @@ class Particles:
         damage: [-], shape [particle_count].
         body: index of the body in the scene, shape [particle_count].
         spacing: particle spacing h [m].
-        time: simulated time after contact [s].
+        time: simulated time after point-mass contact [s].
+        contact_time: when bodies touched, on the same clock [s]; NaN if they have not.
         physics_version: of the engine that made them.
         scene_hash: of the scene that they are of.
     """
@@ -46,6 +47,7 @@ class Particles:
     body: Integers
     spacing: float
     time: float
+    contact_time: float
     physics_version: int
     scene_hash: str
 
@@ -79,6 +81,7 @@ def _particles(dataset: xr.Dataset) -> Particles:
         body=_values(dataset, "body").astype(np.int64),
         spacing=float(dataset.attrs["spacing"]),
         time=float(dataset.attrs["time"]),
+        contact_time=float(dataset.attrs.get("contact_time", np.nan)),
         physics_version=int(dataset.attrs["physics_version"]),
         scene_hash=str(dataset.attrs["scene_hash"]),
     )

@@ -1,7 +1,9 @@
 """The outcomes of a job: names, units and meanings (CF attributes)."""
 
 from analysis.remnant.ellipsoid import THIN
-from analysis.remnant.fragments import LINKING_LENGTH
+from analysis.remnant.filled import CLOSING, SURFACE
+from analysis.remnant.fragments import LINKING_LENGTH, OTHER_LENGTHS
+from analysis.remnant.lobes import NECK, SMOOTHING
 from analysis.remnant.settling import TOLERANCE, WINDOW
 from engine.quantities import CONSERVED, HEATS, HISTORY, Quantity
 
@@ -65,6 +67,23 @@ OUTCOMES = {
         "1",
         "clumps of negative two-body energy join until none is left",
     ),
+    **{
+        name: Quantity(
+            f"mass of the largest remnant at a linking length of {length:g} particle spacings, over the target's",
+            "1",
+            "as mass_ratio: where they differ, what counts as one remnant is a matter of the linking length",
+        )
+        for name, length in OTHER_LENGTHS.items()
+    },
+    "contact_time": Quantity(
+        "time at which the bodies touched, after point-mass contact", "s", "NaN if contact is no part of the scene"
+    ),
+    "contact_offset": Quantity(
+        "distance of the centres when the bodies touched, over the sum of their radii, less 1",
+        "1",
+        "of point masses with gravity that left the start; NaN as contact_time",
+    ),
+    "contact_angle": Quantity("impact angle when the bodies touched", "degree", "as contact_offset"),
     "clumps": Quantity("number of clumps, single particles included", "1"),
     "b_over_a": Quantity(
         "intermediate over longest axis of the largest remnant",
@@ -108,6 +127,25 @@ OUTCOMES = {
         "density of the largest remnant from the volumes of its particles",
         "kg m-3",
         "mass over the sum of m/rho = J m/rho0; gaps between particles do not count",
+    ),
+    "filled_volume": Quantity(
+        "volume that the largest remnant fills, pores between particles included",
+        "m3",
+        f"within {CLOSING:g} particle spacings of a particle, and the surface moved inward to {SURFACE:g} beyond the "
+        "outermost particles; some per cent too small, more when thin",
+    ),
+    "filled_density": Quantity(
+        "density of the largest remnant in the volume that it fills", "kg m-3", "mass over filled_volume"
+    ),
+    "lobes": Quantity(
+        "number of lobes of the largest remnant",
+        "1",
+        f"maxima of the mass per length along its longest axis, smoothed over {SMOOTHING:g} particle spacings, "
+        f"with necks at least {NECK:.0%} lower than the maxima beside them",
+    ),
+    "largest_lobe_fraction": Quantity("mass of the largest lobe over that of the largest remnant", "1", "as lobes"),
+    "second_lobe_fraction": Quantity(
+        "mass of the second largest lobe over that of the largest remnant", "1", "as lobes"
     ),
     "spin_period": Quantity(
         "rotation period of the largest remnant", "s", "inverse inertia tensor times angular momentum; NaN if undefined"

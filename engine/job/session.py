@@ -220,7 +220,9 @@ class Session:
         )
 
     def _attributes(self) -> Attributes:
+        contact = float(self.simulation.clock.contact_time[None])
         return {
+            **({"contact_time": contact} if np.isfinite(contact) else {}),
             "time": self.simulation.time,
             "step": self.simulation.step,
             "spacing": self.scene.spacing,

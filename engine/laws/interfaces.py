@@ -113,15 +113,30 @@ class ShearLaw(Protocol):
 class StrengthLaw(Protocol):
     """Largest shear stress (engine/physics.md, section 4)."""
 
-    def limit(self, p, P, E, D, body):
-        """Return the largest sqrt(J2) [Pa] of particle p; infinite where nothing limits it.
+    def bears_shear(self, P, D):
+        """Return whether there may be any shear stress at a pressure [Pa] and a damage [-]."""
+
+    def limit(self, P, E, D, s, body):
+        """Return the largest sqrt(J2) [Pa]; infinite where nothing limits it.
 
         Args:
-            p: index of the particle.
             P: pressure [Pa], positive in compression.
             E: specific internal energy [J/kg].
             D: damage [-].
+            s: direction of the deviatoric stress, of any size, positive in tension.
             body: index of the body.
+        """
+
+
+class FrictionLaw(Protocol):
+    """Friction of damaged rock (engine/physics.md, section 4)."""
+
+    def coefficient(self, mu, s):
+        """Return the largest sqrt(J2)/P [-].
+
+        Args:
+            mu: that in triaxial compression [-].
+            s: direction of the deviatoric stress, of any size, positive in tension.
         """
 
 

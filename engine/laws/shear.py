@@ -75,11 +75,11 @@ class Hencky:
 
         Where Y = 0 the stored strain is zero.
         """
-        G, Y = self.modulus(body), self.strength.limit(p, P, E, D, body)
-        strain, remaining = mat3(0.0), vec6(0.0)
-        if Y > 0.0:
+        G, strain, remaining = self.modulus(body), mat3(0.0), vec6(0.0)
+        if self.strength.bears_shear(P, D):
             remaining = deform(self.b_minus_I[p], H, growth)
             strain = deviator(half_log(unpack(remaining)))
+            Y = self.strength.limit(P, E, D, strain, body)
             factor = return_factor(2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain)), Y)
             if factor < 1.0:
                 strain *= factor

@@ -7,6 +7,7 @@ import taichi.math as tm
 
 from engine.device.backend import Real
 from engine.device.fields import per_body
+from engine.laws.friction import FRICTION_LAWS
 from engine.scene.material import Material
 
 
@@ -15,22 +16,28 @@ class Strength:
     """Largest sqrt(J2) of intact, damaged and partly damaged rock.
 
     Args:
-        materials: one per body.
+        materials: one per body, of one law of friction.
     """
 
     def __init__(self, materials: Sequence[Material]) -> None:
+        self.friction = FRICTION_LAWS[materials[0].friction_law]()
         constants = ("cohesion", "intact_friction", "strength_limit", "melt_energy", "friction")
         self.table = per_body(**{name: [material.known(name) for material in materials] for name in constants})
 
     @ti.func
-    def limit(self, p, P, E, D, body):
+    def bears_shear(self, P, D):
+        """Return whether rock is under pressure or not wholly damaged."""
+        return P > 0.0 or D < 1.0
+
+    @ti.func
+    def limit(self, P, E, D, s, body):
         """Return Y = (1 - D) Y_i + D Y_d [Pa]."""
         m = self.table[body]
         confining = ti.max(P, 0.0)
         friction, rise = m.intact_friction * confining, m.strength_limit - m.cohesion
         intact = m.cohesion + friction * rise / (rise + friction)
         intact *= ti.min(ti.max(1.0 - E / m.melt_energy, 0.0), 1.0)
-        damaged = ti.min(m.friction * confining, intact)
+        damaged = ti.min(self.friction.coefficient(m.friction, s) * confining, intact)
         return (1.0 - D) * intact + D * damaged
 
 
@@ -39,7 +46,12 @@ class Unlimited:
     """Elasticity without yielding."""
 
     @ti.func
-    def limit(self, p, P, E, D, body):
+    def bears_shear(self, P, D):
+        """Return true."""
+        return True
+
+    @ti.func
+    def limit(self, P, E, D, s, body):
         """Return infinity."""
         return ti.cast(tm.inf, Real)
 

@@ -33,12 +33,16 @@ class Blocks:
         first: range of each block in `order`, shape [block_count + 1].
         order: particles by block, then by index; ballistic ones come last, shape [particle_count].
         source: for every tile the eight blocks whose copies hold it, or -1; shape [tile_count, 8].
+        body: velocity field of every tile, shape [tile_count].
+        place: range of the tiles of every place, one for each velocity field there; shape [place_count + 1].
     """
 
     origin: Integers
     first: Integers
     order: Integers
     source: Integers
+    body: Integers
+    place: Integers
 
 
 def out_of_range(x: NDArray[np.floating], dx: float) -> NDArray[np.bool_]:
@@ -62,20 +66,22 @@ def wrap(x: NDArray[np.float64], block: Integers, dx: float, period: Period) -> 
     return x - turns * period * (BLOCK_EDGE * dx), (block - turns * period).astype(np.int32)
 
 
-def build_blocks(block: Integers, period: Period = UNBOUNDED) -> Blocks:
-    """Blocks, order and overlaps from the block of each particle.
+def build_blocks(block: Integers, body: Integers, period: Period = UNBOUNDED) -> Blocks:
+    """Blocks, order and overlaps from the block of each particle; every velocity field has blocks of its own.
 
     Args:
         block: block coordinates, shape [particle_count, 3].
+        body: velocity field of each particle, shape [particle_count].
         period: blocks after which space repeats along each axis; 0 is unbounded.
     """
-    keys, inverse, counts = np.unique(_key(block), return_inverse=True, return_counts=True)
-    ballistic = (counts == 1) & (_neighbour_count(keys, period) == 1)
-    rank = np.where(ballistic, len(keys), np.arange(len(keys)))[inverse]
-    order = np.argsort(rank, kind="stable").astype(np.int32)
-    shared = keys[~ballistic]
-    first = np.concatenate([[0], np.cumsum(counts[~ballistic])]).astype(np.int32)
-    return Blocks(_coordinates(shared), first, order, _sources(shared, period))
+    places, place, particles = np.unique(_key(block), return_inverse=True, return_counts=True)
+    ballistic = ((particles == 1) & (_neighbour_count(places, period) == 1))[place]
+    fields = int(body.max(initial=0)) + 1
+    order = np.argsort(np.where(ballistic, len(places) * fields, place * fields + body), kind="stable").astype(np.int32)
+    keys, counts = np.unique((place * fields + body)[~ballistic], return_counts=True)
+    first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+    origin, owner = _coordinates(places[keys // fields]), (keys % fields).astype(np.int32)
+    return Blocks(origin, first, order, *_tiles(origin, owner, period))
 
 
 def _folded(block: Integers, period: Period) -> Integers:
@@ -100,10 +106,22 @@ def _neighbour_count(keys: Integers, period: Period) -> Integers:
     return np.asarray(np.isin(around, keys).sum(axis=1))
 
 
-def _sources(keys: Integers, period: Period) -> Integers:
-    """The eight blocks over each tile that any block touches."""
-    tiles = _coordinates(np.unique(_key(_folded(_coordinates(keys)[:, None, :] + CORNERS, period))))
-    owners = _key(_folded(tiles[:, None, :] - CORNERS, period))
-    index = np.searchsorted(keys, owners)
-    found = np.isin(owners, keys)
-    return np.where(found, index, -1).astype(np.int32)
+def _tiles(origin: Integers, body: Integers, period: Period) -> tuple[Integers, Integers, Integers]:
+    """The eight blocks over each tile that any block touches, its velocity field, and the tiles of each place."""
+    fields = int(body.max(initial=0)) + 1
+    touched = _key(_folded(origin[:, None, :] + CORNERS, period))
+    places = np.unique(touched)
+    place, field = np.divmod(np.unique(_find(places, touched) * fields + body[:, None]), fields)
+    owners = _key(_folded(_coordinates(places)[place][:, None, :] - CORNERS, period))
+    occupied = np.unique(_key(origin))
+    rank = _find(occupied, owners)
+    source = _find(_find(occupied, _key(origin)) * fields + body, rank * fields + field[:, None])
+    first = np.searchsorted(place, np.arange(len(places) + 1))
+    return np.where(rank >= 0, source, -1).astype(np.int32), field.astype(np.int32), first.astype(np.int32)
+
+
+def _find(keys: Integers, wanted: Integers) -> Integers:
+    """Index in ascending keys of each wanted one, or -1."""
+    index = np.searchsorted(keys, wanted)
+    found = np.isin(wanted, keys)
+    return np.where(found, index, -1)

@@ -6,11 +6,10 @@ one thread works on one block at a time.
 
 import taichi as ti
 
-from engine.constants import BLOCK_EDGE
 from engine.device.backend import TASK, Real, vec3, vec4
-from engine.mpm.interfaces import Exchange
-from engine.mpm.spline import spline_weights
-from engine.mpm.stencil import COPY, TILE, Stencil, corner_coordinates, in_copy, node_in_tile
+from engine.mpm.interfaces import ContactLaw, Exchange
+from engine.mpm.spline import REACH, spline_weights
+from engine.mpm.stencil import COPY, TILE, Stencil, node_in_tile
 from engine.mpm.time_step import no_limits, rate_of, tightest
 from engine.state.clock import Clock
 
@@ -22,12 +21,13 @@ class GridPass:
     Args:
         stencil: nodes of the particles.
         exchange: what a particle gives and takes.
+        contact: where bodies touch.
         clock: whether the step runs, and how long the next one may be.
         cfl: Courant number: time step in units of the time a signal needs for one cell [-].
     """
 
-    def __init__(self, stencil: Stencil, exchange: Exchange, clock: Clock, cfl: float) -> None:
-        self.stencil, self.exchange, self.clock = stencil, exchange, clock
+    def __init__(self, stencil: Stencil, exchange: Exchange, contact: ContactLaw, clock: Clock, cfl: float) -> None:
+        self.stencil, self.exchange, self.contact, self.clock = stencil, exchange, contact, clock
         self.cfl = ti.field(Real, ())
         self.cfl[None] = cfl
 
@@ -58,22 +58,40 @@ class GridPass:
 
     @ti.kernel
     def update_grid(self):
-        """Sum the copies of every node and divide by its mass."""
-        for n in range(self.stencil.tile_count[None] * TILE * self.clock.running[None]):
-            tile, inner = n // TILE, in_copy(node_in_tile(n))
-            total = vec4(0.0)
-            for corner in range(8):
-                b = self.stencil.source[tile, corner]
-                if b >= 0:
-                    total += self.stencil.nodes[b * COPY + corner_offset(corner) + inner]
-            if total[3] > 0.0:
-                mean = vec3(total[0] / total[3], total[1] / total[3], total[2] / total[3])
-                mean = self.exchange.nodes.apply(self.stencil.node_position(tile, n), mean)
-                result = vec4(mean, total[3])
-                for corner in range(8):
-                    b = self.stencil.source[tile, corner]
-                    if b >= 0:
-                        self.stencil.nodes[b * COPY + corner_offset(corner) + inner] = result
+        """Sum the copies of every node, of all bodies where they touch, and divide by the mass."""
+        for n in range(self.stencil.place_count[None] * TILE * self.clock.running[None]):
+            node = node_in_tile(n)
+            first, last = self.stencil.place[n // TILE], self.stencil.place[n // TILE + 1]
+            if last - first == 1:
+                self.set_velocity(first, node, self.stencil.sum_of_copies(first, node))
+            else:
+                self.update_shared(first, last, node)
+
+    @ti.func
+    def update_shared(self, first, last, node):
+        """Give the bodies of tiles `first` to `last`, without it, one velocity at a node where they touch."""
+        total, most, second = vec4(0.0), ti.cast(-REACH, Real), ti.cast(-REACH, Real)
+        for tile in range(first, last):
+            own = self.stencil.sum_of_copies(tile, node)
+            depth = self.contact.depth(own[3], self.stencil.body[tile])
+            second = ti.max(second, ti.min(most, depth))
+            most = ti.max(most, depth)
+            total += own
+        touching = second > -REACH and self.contact.touch(most, second)
+        if touching:
+            self.clock.report_contact()
+        for tile in range(first, last):
+            if not touching:
+                total = self.stencil.sum_of_copies(tile, node)
+            self.set_velocity(tile, node, total)
+
+    @ti.func
+    def set_velocity(self, tile, node, total):
+        """Write the mean of what a node of a tile was given, and its mass, into all its copies."""
+        if total[3] > 0.0:
+            mean = vec3(total[0] / total[3], total[1] / total[3], total[2] / total[3])
+            mean = self.exchange.nodes.apply(self.stencil.node_position(tile, node), mean)
+            self.stencil.set_copies(tile, node, vec4(mean, total[3]))
 
     @ti.kernel
     def grid_to_particles(self):
@@ -133,9 +151,3 @@ class GridPass:
     def dx(self):
         """Return the grid spacing [m] in the precision of the fields."""
         return ti.cast(self.stencil.dx[None], Real)
-
-
-@ti.func
-def corner_offset(corner):
-    """Return the index of the first node of a tile in the copy of the block at one of its corners."""
-    return in_copy(BLOCK_EDGE * corner_coordinates(corner))

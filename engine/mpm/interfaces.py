@@ -11,6 +11,16 @@ class Boundary(Protocol):
         """Return the velocity [m/s] that is left at x [m] of a velocity there."""
 
 
+class ContactLaw(Protocol):
+    """Where bodies touch (engine/physics.md, section 1)."""
+
+    def depth(self, mass, body):
+        """Return how deep [cells] a node lies in a body that gives it this mass [kg]."""
+
+    def touch(self, deepest, next_deepest):
+        """Return whether the two bodies touch in which a node lies deepest [cells]."""
+
+
 class Exchange(Protocol):
     """What a particle gives to its nodes and takes from them in one pass over the grid; device functions.
 

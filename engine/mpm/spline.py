@@ -7,6 +7,9 @@ from engine.device.backend import Real, vec3
 WIDTH = 3
 """Nodes of a particle along an axis."""
 
+REACH = 1.5
+"""Distance [cells] at which the spline of a node ends."""
+
 SECOND_MOMENT = 0.25
 """Second moment of the weights along an axis, sum w_i (x_i - x)^2, in units of dx^2; the same at every position."""
 

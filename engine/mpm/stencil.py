@@ -56,19 +56,20 @@ class Stencil:
         self.particles, self.atomic, self.capacity = particles, on_gpu(), capacity(blocks)
         self.dx = ti.field(ti.f64, ())
         self.dx[None] = dx
-        self.block_count, self.tile_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
+        self.block_count, self.place_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.shared_count, self.ballistic_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.owner = ti.field(ti.i32, particles.x.shape)
         self.origin = ti.Vector.field(3, ti.i32, self.capacity)
         self.first = ti.field(ti.i32, self.capacity + 1)
         self.source = ti.field(ti.i32, (8 * self.capacity, 8))
+        self.body, self.place = ti.field(ti.i32, 8 * self.capacity), ti.field(ti.i32, 8 * self.capacity + 1)
         self.nodes = vec4.field(shape=self.capacity * COPY)
 
     def set_blocks(self, blocks: Blocks) -> None:
         """Store newly built blocks, in whose order the particles lie; there must be room for them."""
         shared = int(blocks.first[-1])
-        counts = (self.block_count, self.tile_count, self.shared_count, self.ballistic_count)
-        sizes = (len(blocks.origin), len(blocks.source), shared, len(blocks.order) - shared)
+        counts = (self.block_count, self.place_count, self.shared_count, self.ballistic_count)
+        sizes = (len(blocks.origin), len(blocks.place) - 1, shared, len(blocks.order) - shared)
         for field, size in zip(counts, sizes, strict=True):
             field[None] = size
         owner = np.repeat(np.arange(len(blocks.origin), dtype=np.int32), np.diff(blocks.first))
@@ -76,6 +77,8 @@ class Stencil:
         overwrite(self.origin, blocks.origin)
         overwrite(self.first, blocks.first)
         overwrite(self.source, blocks.source)
+        overwrite(self.body, blocks.body)
+        overwrite(self.place, blocks.place)
 
     @ti.func
     def lowest_node(self, p):
@@ -182,14 +185,32 @@ class Stencil:
         return shared
 
     @ti.func
-    def node_position(self, tile, n):
-        """Return the position of node n of a tile [m]."""
+    def sum_of_copies(self, tile, node):
+        """Return the sum over all copies of a node of a tile: momentum [kg m/s] and mass [kg]."""
+        total = vec4(0.0)
+        for corner in range(8):
+            b = self.source[tile, corner]
+            if b >= 0:
+                total += self.nodes[b * COPY + corner_offset(corner) + in_copy(node)]
+        return total
+
+    @ti.func
+    def set_copies(self, tile, node, value):
+        """Write a value into all copies of a node of a tile."""
+        for corner in range(8):
+            b = self.source[tile, corner]
+            if b >= 0:
+                self.nodes[b * COPY + corner_offset(corner) + in_copy(node)] = value
+
+    @ti.func
+    def node_position(self, tile, node):
+        """Return the position of a node of a tile [m]."""
         first = ti.Vector([0, 0, 0])
         for corner in range(8):
             b = self.source[tile, corner]
             if b >= 0:
                 first = BLOCK_EDGE * (self.origin[b] + corner_coordinates(corner)) - MARGIN
-        return self.dx[None] * ti.cast(first + node_in_tile(n), ti.f64)
+        return self.dx[None] * ti.cast(first + node, ti.f64)
 
 
 @ti.func
@@ -218,6 +239,12 @@ def node_in_tile(n):
 def corner_coordinates(corner):
     """Return the coordinates, 0 or 1, of one of the eight corners of a cube."""
     return ti.Vector([corner >> 2, (corner >> 1) & 1, corner & 1])
+
+
+@ti.func
+def corner_offset(corner):
+    """Return the index of the first node of a tile in the copy of the block at one of its corners."""
+    return in_copy(BLOCK_EDGE * corner_coordinates(corner))
 
 
 @ti.func

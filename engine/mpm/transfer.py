@@ -3,7 +3,7 @@
 import taichi as ti
 
 from engine.mpm.grid_pass import GridPass
-from engine.mpm.interfaces import Scheme
+from engine.mpm.interfaces import ContactLaw, Scheme
 from engine.mpm.stencil import Stencil
 from engine.state.clock import Clock
 
@@ -15,6 +15,7 @@ class Transfer:
     Args:
         stencil: nodes of the particles.
         scheme: what particles exchange with the grid.
+        contact: where bodies touch.
         clock: time and time step.
         cfl: Courant number: time step in units of the time a signal needs for one cell [-].
 
@@ -22,9 +23,9 @@ class Transfer:
         stages: of a step, in order.
     """
 
-    def __init__(self, stencil: Stencil, scheme: Scheme, clock: Clock, cfl: float) -> None:
+    def __init__(self, stencil: Stencil, scheme: Scheme, contact: ContactLaw, clock: Clock, cfl: float) -> None:
         self.clock = clock
-        self.stages = scheme.stages(lambda exchange: GridPass(stencil, exchange, clock, cfl))
+        self.stages = scheme.stages(lambda exchange: GridPass(stencil, exchange, contact, clock, cfl))
 
     def step(self) -> None:
         """Advance all particles by one time step, unless the clock says to pause."""

@@ -1,5 +1,6 @@
 """The builder of collision scenes: two spheres meeting at a given speed and angle (engine/physics.md, section 8)."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
@@ -13,7 +14,7 @@ from engine.scene.input_errors import did_you_mean
 from engine.scene.material import FractureRules, Material
 from engine.scene.materials import CONSTANTS
 from engine.scene.parameter_sets import DEFAULT, PARAMETER_SETS, over_set
-from engine.scene.scene import Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, ViscosityCoefficients
+from engine.scene.scene import Contact, Fraction, Gravity, Numerics, Output, Physics, Scene, Seed, ViscosityCoefficients
 from engine.scene.two_body import Approach, approach_state
 
 
@@ -59,9 +60,10 @@ class Collision(Frozen):
         key("distance of the centres at the start, in contact distances R1 + R2", "1"),
     ] = 2.0
     seed: Annotated[Seed, key("seed of the particles and flaws", "1")] = 1
-    parameter_set: Annotated[str, key("published set-up whose keys are the defaults")] = DEFAULT
+    parameter_set: Annotated[str, key("set-up whose keys are the defaults")] = DEFAULT
     fracture: Annotated[OrOff[FractureRules], key("rules of fracture")] = FractureRules()
     gravity: Annotated[OrOff[Gravity], key("self-gravity")] = Gravity()
+    contact: Annotated[OrOff[Contact], key("contact of the bodies")] = Contact()
     viscosity: Annotated[OrOff[ViscosityCoefficients], key("viscosity")] = None
     sound_speed: Annotated[Fraction, key("factor on the speed of sound, below 1 a late-stage approximation", "1")] = 1.0
     numerics: Annotated[Numerics, key("resolution in space and time")] = Numerics()
@@ -121,10 +123,12 @@ class Collision(Frozen):
         """Return target and projectile, both still at the origin.
 
         Raises:
-            SceneError: a constant is unknown that strength or fracture needs, the equations of state have two forms,
-                or a body spins faster than its material carries waves.
+            SceneError: a constant is unknown that strength or fracture needs, the bodies have two forms of equation of
+                state or two laws of friction, or a body spins faster than its material carries waves.
         """
-        self._require_one_form()
+        materials = [self.materials[name] for name in self.material_names]
+        self._require_one_law("eos.form", "equations of state of one form", [each.eos.form for each in materials])
+        self._require_one_law("friction_law", "one law of friction", [each.friction_law for each in materials])
         radius, count = self.target.radius, self.particles
         small = radius if self.projectile.radius is None else self.projectile.radius
         fewer = max(1, round(count * (small / radius) ** 3))
@@ -144,13 +148,13 @@ class Collision(Frozen):
             name=name, radius=radius, particles=particles, material=material, damage=given.damage, spin=given.spin
         )
 
-    def _require_one_form(self) -> None:
-        first, second = self.material_names
-        forms = [self.materials[name].eos.form for name in (first, second)]
-        if forms[0] != forms[1]:
+    def _require_one_law(self, key: str, law: str, laws: Sequence[str]) -> None:
+        """Refuse a target and a projectile whose materials have two laws for one thing."""
+        if laws[0] != laws[1]:
+            first, second = self.material_names
             raise SceneError(
-                f"'target.material' {first} and 'projectile.material' {second} must have equations of state of one "
-                f"form ('materials.{first}.eos.form' is {forms[0]}, 'materials.{second}.eos.form' is {forms[1]})"
+                f"'target.material' {first} and 'projectile.material' {second} must have {law} "
+                f"('materials.{first}.{key}' is {laws[0]}, 'materials.{second}.{key}' is {laws[1]})"
             )
 
     def _complete(self, name: str) -> Material:
@@ -187,6 +191,7 @@ class Collision(Frozen):
             physics=Physics(
                 fracture=self.fracture,
                 gravity=self.gravity,
+                contact=self.contact,
                 viscosity=self.viscosity,
                 sound_speed=self.sound_speed,
             ),

@@ -24,6 +24,9 @@ AnyEquationOfState = Annotated[
 ]
 """Constants of an equation of state; their key `form` chooses which, Tillotson's if it is not given."""
 
+LARGEST_FRICTION = 3.0**0.5
+"""sqrt(J2)/P in triaxial compression at a friction angle of 90 degrees."""
+
 NEEDED = {
     "strength": ("cohesion", "intact_friction", "strength_limit", "melt_energy", "friction"),
     "fracture": ("weibull_k", "weibull_m"),
@@ -48,7 +51,11 @@ class Material(Frozen):
     intact_friction: Annotated[NonNegative | None, key("friction coefficient mu_i of intact rock", "1")] = None
     strength_limit: Annotated[Positive | None, key("limit Y_M of intact strength under pressure", "Pa")] = None
     melt_energy: Annotated[Positive | None, key("specific energy u_melt at which strength vanishes", "J kg-1")] = None
-    friction: Annotated[NonNegative | None, key("friction coefficient mu_d of damaged rock", "1")] = None
+    friction: Annotated[NonNegative | None, key("friction coefficient mu_d = sqrt(J2)/P of damaged rock", "1")] = None
+    friction_law: Annotated[
+        Literal["drucker-prager", "mohr-coulomb", "matsuoka-nakai"],
+        key("how friction depends on the direction of shear; `friction` is that of triaxial compression"),
+    ] = "drucker-prager"
     weibull_k: Annotated[Positive | None, key("Weibull coefficient k: flaws per volume, k strain^m", "m-3")] = None
     weibull_m: Annotated[
         Annotated[Number, Field(ge=1.0, allow_inf_nan=False)] | None, key("Weibull exponent m of flaws", "1")
@@ -74,6 +81,15 @@ class Material(Frozen):
     def _strengthens_with_pressure(self) -> Self:
         if self.strength_limit is not None and self.cohesion is not None and self.strength_limit <= self.cohesion:
             raise ValueError(f"'strength_limit' {self.strength_limit} Pa must exceed 'cohesion' {self.cohesion} Pa")
+        return self
+
+    @model_validator(mode="after")
+    def _rubs_at_less_than_a_right_angle(self) -> Self:
+        if self.friction_law != "drucker-prager" and self.friction is not None and self.friction >= LARGEST_FRICTION:
+            raise ValueError(
+                f"'friction' {self.friction} must be below sqrt(3) with friction_law = \"{self.friction_law}\": "
+                "a friction angle phi has 2 sqrt(3) sin(phi)/(3 - sin(phi))"
+            )
         return self
 
     def lacks(self, parts: Iterable[str]) -> dict[str, list[str]]:

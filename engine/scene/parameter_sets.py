@@ -1,4 +1,4 @@
-"""Published set-ups of one collision as tables laid under the keys of a study (engine/physics.md, sections 4-5)."""
+"""Set-ups of one collision as tables laid under the keys of a study (engine/physics.md, sections 4-5)."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -16,6 +16,8 @@ PARAMETER_SETS: dict[str, dict[str, Any]] = {
         "materials": {"basalt": {"friction": 0.945}},  # Klar's cone of 40 deg
         "fracture": {"flaws": "2NlnN", "strain": "young", "growth_speed": 0.5, "per_flaw": False},
     },
+    # phi = 40 deg in all directions, as soil mechanics has it for broken rock
+    "rubble": {"materials": {"basalt": {"friction": 0.945, "friction_law": "mohr-coulomb"}}},
 }
 """Keys of engine.scene.collision.Collision in which the set-ups differ from its defaults, by the name of the set."""
 

@@ -54,6 +54,12 @@ class Gravity(Frozen):
     ] = 0.4
 
 
+class Contact(Frozen):
+    """Bodies touch where their surfaces meet, and not where they share nodes (engine/physics.md, section 1)."""
+
+    gap: Annotated[NonNegative, key("distance of surfaces at which they touch, in cells", "1")] = 0.25
+
+
 class ViscosityCoefficients(Frozen):
     """Explicit viscous stress (engine/physics.md, section 6)."""
 
@@ -92,6 +98,7 @@ class Physics(Frozen):
     strength: Annotated[bool, key("limit of the deviatoric stress, by radial return")] = True
     fracture: Annotated[OrOff[FractureRules], key("rules of fracture")] = FractureRules()
     gravity: Annotated[OrOff[Gravity], key("self-gravity")] = Gravity()
+    contact: Annotated[OrOff[Contact], key("contact of bodies")] = Contact()
     viscosity: Annotated[OrOff[ViscosityCoefficients], key("viscosity")] = None
     uniform_gravity: Annotated[OrOff[Vector], key("acceleration in place of self-gravity", "m s-2")] = None
     walls: Annotated[tuple[Wall, ...], key("rigid planes")] = ()
@@ -113,7 +120,7 @@ class Physics(Frozen):
 class Numerics(Frozen):
     """Resolution in space and time; the grid is dx = h particles_per_cell^(1/3) (for `f32`: physics.md, section 10)."""
 
-    particles_per_cell: Annotated[Positive, key("particles in a cell of the grid", "1")] = 4.0
+    particles_per_cell: Annotated[Positive, key("particles in a cell of the grid", "1")] = 2.0
     cfl: Annotated[Fraction, key("time step in units of dx/(signal speed + particle speed): stable below 1", "1")] = 0.6
     transfer: Annotated[
         Literal["filtered", "apic"], key("transfer between particles and grid; `apic` is there to compare with")
@@ -170,6 +177,13 @@ class Scene(Frozen):
         forms = sorted({body.material.eos.form for body in self.bodies})
         if len(forms) > 1:
             raise ValueError(f"'eos' must be of one form in all bodies of a scene (given {', '.join(forms)})")
+        return self
+
+    @model_validator(mode="after")
+    def _has_one_law_of_friction(self) -> Self:
+        laws = sorted({body.material.friction_law for body in self.bodies})
+        if len(laws) > 1:
+            raise ValueError(f"'friction_law' must be the same in all bodies of a scene (given {', '.join(laws)})")
         return self
 
     @model_validator(mode="after")

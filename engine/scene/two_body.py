@@ -1,4 +1,4 @@
-"""Two point masses before contact: where they came from (engine/physics.md, section 8)."""
+"""Two point masses before contact: where they came from, and where they go (engine/physics.md, section 8)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -49,6 +49,20 @@ def approach_state(position: Array, velocity: Array, total_mass: float, separati
     return Approach(state[:3], state[3:], duration, "separation" if arrived else "apocentre")
 
 
+def orbit(position: Array, velocity: Array, total_mass: float, duration: float) -> tuple[Array, Array]:
+    """Relative position [m] and velocity [m/s] after some time.
+
+    Args:
+        position: relative position [m], shape [3].
+        velocity: relative velocity [m/s], shape [3].
+        total_mass: mass of both bodies [kg]; 0 for bodies without gravity.
+        duration: time from then on [s].
+    """
+    state = np.concatenate([position, velocity])
+    path = solve_ivp(_rate(G_NEWTON * total_mass), (0.0, duration), state, method="DOP853", rtol=1e-12, atol=1e-9)
+    return path.y[:3, -1], path.y[3:, -1]
+
+
 def apocentre(position: Array, velocity: Array, gm: float) -> float:
     """Largest distance [m] of a two-body orbit; infinite when unbound."""
     energy = 0.5 * float(velocity @ velocity) - gm / float(np.linalg.norm(position))
@@ -59,10 +73,19 @@ def apocentre(position: Array, velocity: Array, gm: float) -> float:
     return -gm / (2.0 * energy) * (1.0 + eccentricity)
 
 
+def _rate(gm: float) -> Callable[[float, Array], Array]:
+    def rate(time: float, state: Array) -> Array:
+        return np.concatenate([state[3:], -gm * state[:3] / np.linalg.norm(state[:3]) ** 3])
+
+    return rate
+
+
 def _straight_back(position: Array, velocity: Array) -> Approach:
-    """Bodies drawn apart along their line of centres, with the velocity they have at contact."""
+    """Bodies drawn apart along their line of centres, with the radial velocity and the angular momentum of contact."""
     gap = (NEAREST_START - 1.0) * float(np.linalg.norm(position))
-    return Approach(position * NEAREST_START, velocity, gap / float(np.linalg.norm(velocity)), "nearest")
+    radial = float(velocity @ position) / float(position @ position) * position
+    start = radial + (velocity - radial) / NEAREST_START
+    return Approach(position * NEAREST_START, start, gap / float(np.linalg.norm(velocity)), "nearest")
 
 
 def _turning_point(time: float, state: Array) -> float:
@@ -79,9 +102,6 @@ def _distance(separation: float) -> Callable[[float, Array], float]:
 def _backward(contact: Array, gm: float, separation: float) -> tuple[Array, float, bool]:
     """State where the pair was at `separation` or else at its apocentre, the time from there, and whether it was."""
 
-    def rate(time: float, state: Array) -> Array:
-        return np.concatenate([state[3:], -gm * state[:3] / np.linalg.norm(state[:3]) ** 3])
-
     events = [_distance(separation), _turning_point]
     for event in events:
         event.terminal, event.direction = True, 1.0  # type: ignore[attr-defined]
@@ -90,7 +110,7 @@ def _backward(contact: Array, gm: float, separation: float) -> tuple[Array, floa
     bound = np.isfinite(apocentre(contact[:3], contact[3:], gm))
     step = 0.01 * (distance**3 / gm) ** 0.5 if bound else np.inf  # so that none passes the separation twice unseen
     path = solve_ivp(
-        rate, (0.0, longest), contact, method="DOP853", events=events, rtol=1e-12, atol=1e-9, max_step=step
+        _rate(gm), (0.0, longest), contact, method="DOP853", events=events, rtol=1e-12, atol=1e-9, max_step=step
     )
     states, times = np.concatenate([e for e in path.y_events if len(e)]), np.concatenate(path.t_events)
     return states[0], -float(times[0]), len(path.t_events[0]) > 0

@@ -19,8 +19,9 @@ from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
 from engine.mpm.apic import Apic
+from engine.mpm.contact import Contact, SharedNodes
 from engine.mpm.filtered import Filtered
-from engine.mpm.interfaces import Boundary, Scheme
+from engine.mpm.interfaces import Boundary, ContactLaw, Scheme
 from engine.mpm.response import Response
 from engine.mpm.walls import NoWalls, Walls
 from engine.scene.scene import Scene
@@ -66,6 +67,13 @@ def gravity(scene: Scene, particles: Particles) -> GravityField:
 def walls(scene: Scene) -> Boundary:
     """Return the rigid planes of a scene."""
     return Walls(scene.physics.walls) if scene.physics.walls else NoWalls()
+
+
+def contact(scene: Scene) -> ContactLaw:
+    """Return where bodies touch."""
+    if scene.physics.contact and len(scene.bodies) > 1:
+        return Contact(scene.materials, scene.dx, scene.physics.contact.gap)
+    return SharedNodes()
 
 
 def scheme(scene: Scene, response: Response) -> Scheme:

@@ -71,6 +71,7 @@ class Simulation:
         self.walls = assembly.walls(scene)
         self.response = Response(self.particles, self.constitution, self.gravity, self.walls, self.clock, scene.dx)
         self.scheme = assembly.scheme(scene, self.response)
+        self.contact = assembly.contact(scene)
         self._make_room(scene.particles // 8)
         self.events = Events(gravity_due=scene.start_time if physics.gravity else math.inf)
 
@@ -150,7 +151,9 @@ class Simulation:
 
     def _build_blocks(self) -> None:
         """Build the blocks from where the particles were when blocks were last built."""
-        blocks = build_blocks(self.particles.read("origin")["origin"], self.scene.period_blocks)
+        state = self.particles.read("origin", "body")
+        body = state["body"] if self.scene.physics.contact else np.zeros_like(state["body"])
+        blocks = build_blocks(state["origin"], body, self.scene.period_blocks)
         if len(blocks.origin) > self.stencil.capacity:
             self._make_room(2 * len(blocks.origin))
         self.particles.sort(blocks.order)
@@ -159,7 +162,7 @@ class Simulation:
 
     def _make_room(self, blocks: int) -> None:
         self.stencil = Stencil(self.particles, self.scene.dx, blocks)
-        self.transfer = Transfer(self.stencil, self.scheme, self.clock, self.scene.numerics.cfl)
+        self.transfer = Transfer(self.stencil, self.scheme, self.contact, self.clock, self.scene.numerics.cfl)
 
     def _handle_events(self) -> None:
         if self.clock.moved_out[None]:

@@ -1,5 +1,6 @@
 """Clock on the device: time, time step and reasons to pause, so that steps do not wait for the host."""
 
+import math
 from collections.abc import Mapping
 
 import taichi as ti
@@ -34,6 +35,7 @@ class Clock:
 
     Attributes:
         time, end, pause_time: simulated time [s] now, of the end, and up to which steps run.
+        contact_time: end of the first step in which two bodies touched [s]; infinite before.
         dt: length of the last step [s].
         kick: time in which forces act [s], from the middle of the step before to the middle of this one.
         rate, least_rate: inverse of the next time step [1/s], and its lower bound.
@@ -45,15 +47,17 @@ class Clock:
     """
 
     def __init__(self, start: float, end: float, longest_step: float) -> None:
-        self.time, self.end, self.pause_time = (ti.field(ti.f64, ()) for _ in range(3))
+        self.time, self.end, self.pause_time, self.contact_time = (ti.field(ti.f64, ()) for _ in range(4))
         self.dt, self.kick, self.rate, self.least_rate = (ti.field(Real, ()) for _ in range(4))
         self.step, self.running, self.moved_out = (ti.field(ti.i32, ()) for _ in range(3))
         self.fault, self.fault_particle = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.time[None], self.end[None], self.pause_time[None] = start, end, start
+        self.contact_time[None] = math.inf
         self.least_rate[None] = 1.0 / longest_step
         self.fault_particle[None] = 2**31 - 1
         self.kept = {
             "time": self.time,
+            "contact_time": self.contact_time,
             "dt": self.dt,
             "rate": self.rate,
             "step": self.step,
@@ -89,6 +93,12 @@ class Clock:
     def report_rate(self, rate):
         """Report an inverse time step [1/s] that the next step must not fall below."""
         ti.atomic_max(self.rate[None], rate)
+
+    @ti.func
+    def report_contact(self):
+        """Keep the time at which bodies first touch."""
+        if self.contact_time[None] > self.time[None]:
+            self.contact_time[None] = self.time[None]
 
     @ti.func
     def report_moved_out(self):

@@ -15,6 +15,7 @@ from engine.verification.problems.rubble import Rubble
 from engine.verification.problems.runout import Runout
 from engine.verification.problems.shear_jump import ShearJump
 from engine.verification.problems.slope import Slope
+from engine.verification.problems.static_lens import StaticLens
 from engine.verification.problems.stiffness import Stiffness
 
 SHORT: dict[str, Problem] = {
@@ -28,11 +29,14 @@ SHORT: dict[str, Problem] = {
         Hugoniot(speeds=(500.0,), material=MURNAGHAN, name="hugoniot_murnaghan"),
         Bar(),
         Slope(),
+        Slope(friction_angle=35.0, law="mohr-coulomb", name="slope_mohr_coulomb"),
+        Slope(friction_angle=31.5, law="matsuoka-nakai", name="slope_matsuoka_nakai"),
         Collapse(),
         Infall(),
         Cliff(),
         Rubble(),
         Ellipsoid(),
+        StaticLens(),
         ShearJump(),
     )
 }

@@ -30,14 +30,14 @@ class Cliff:
         cells: cells along the initial width; 2 cells x aspect is whole.
         stiffness: c_l in units of sqrt(g H0).
         aspect: initial height over width; the published profiles are those of 3.2.
-        cfl: Courant number [-].
+        filter_time: time of the transfer's filter [dx/(c_l + v_m)].
     """
 
     name = "cliff"
     cells: int = 10
     stiffness: float = 20.0
     aspect: float = 3.2
-    cfl: float = 0.5
+    filter_time: float = Numerics().filter_time
 
     @property
     def height(self) -> float:
@@ -67,7 +67,7 @@ class Cliff:
             period=(None, 4.0 * dx, None),
             end_time=REST * self.fall_time,
             physics=Physics(fracture=None, gravity=None, uniform_gravity=(0.0, 0.0, -GRAVITY), walls=walls),
-            numerics=Numerics(particles_per_cell=4.0, cfl=self.cfl),
+            numerics=Numerics(particles_per_cell=4.0, filter_time=self.filter_time),
         )
 
     def checks(self, harness: Harness) -> list[Check]:

@@ -86,23 +86,28 @@ class Lens:
 
     Attributes:
         start: its motion at t = 0.
-        friction: coefficient mu_d [-].
+        friction: coefficient sqrt(J2)/P of its flow [-].
         particles: number of particles.
         times: when it is compared [s].
+        law: of friction.
+        compression: coefficient in triaxial compression [-]; the same as of its flow if it is not given.
     """
 
     start: Motion
     friction: float
     particles: int
     times: tuple[float, ...]
+    law: str = "drucker-prager"
+    compression: float | None = None
 
     @property
     def scene(self) -> Scene:
         """A sphere of the same volume, whose particles `fields` moves."""
+        friction = self.friction if self.compression is None else self.compression
         body = Sphere(
             radius=RADIUS,
             particles=self.particles,
-            material=elastic(DENSITY, BULK, SHEAR, self.friction),
+            material=elastic(DENSITY, BULK, SHEAR, friction, self.law),
             damage=1.0,
             hydrostatic=False,
         )
@@ -167,9 +172,24 @@ def spinning(particles: int) -> Lens:
     return Lens(start, 0.6, particles, (500.0, 1000.0, 1500.0))
 
 
-def flat(ratio: float, particles: int, friction: float = 0.5) -> Lens:
-    """Return an oblate lens at rest; with a friction of 0.5 it stays if c/a is above 0.278 (`thinnest_lens`)."""
-    return Lens(resting(_shape(1.0, 1.0, ratio), friction), friction, particles, (1000.0, 2000.0, 3000.0))
+def flat(
+    ratio: float,
+    particles: int,
+    friction: float = 0.5,
+    law: str = "drucker-prager",
+    compression: float | None = None,
+) -> Lens:
+    """Return an oblate lens at rest; with a friction of 0.5 it stays if c/a is above 0.278 (`thinnest_lens`).
+
+    Args:
+        ratio: c/a [-].
+        particles: number of particles.
+        friction: coefficient in triaxial extension [-].
+        law: of friction.
+        compression: coefficient in triaxial compression [-]; the same if it is not given.
+    """
+    start, times = resting(_shape(1.0, 1.0, ratio), friction), (1000.0, 2000.0, 3000.0)
+    return Lens(start, friction, particles, times, law, compression)
 
 
 def _shape(a: float, b: float, c: float) -> Tensor:

@@ -17,7 +17,7 @@ def law(name: str) -> Strength:
 
 
 def engine_limit(name: str, P: Array, E: Array, D: Array) -> Array:
-    return evaluate(law(name).limit, np.arange(len(P), dtype=np.int32), P, E, D, np.ones(len(P), dtype=np.int32))[0]
+    return evaluate(law(name).limit, P, E, D, np.zeros((len(P), 3, 3)), np.ones(len(P), dtype=np.int32))[0]
 
 
 def states(count: int = 6000) -> tuple[Array, Array, Array]:
@@ -88,6 +88,6 @@ def test_the_return_factor_is_exactly_one_up_to_the_limit_and_their_ratio_beyond
 
 def test_an_unlimited_solid_keeps_all_strain():
     P, u, D = states(100)
-    (Y,) = evaluate(Unlimited().limit, np.arange(100, dtype=np.int32), P, u, D, np.zeros(100, dtype=np.int32))
+    (Y,) = evaluate(Unlimited().limit, P, u, D, np.zeros((100, 3, 3)), np.zeros(100, dtype=np.int32))
     (found,) = evaluate(return_factor, np.full(100, 1e20), Y)
     assert np.array_equal(found, np.ones(100))

@@ -6,7 +6,7 @@ import taichi as ti
 
 from engine.device.backend import vec4
 from engine.mpm.spline import spline_weights
-from engine.mpm.stencil import COPY, TILE, Stencil, within_margin
+from engine.mpm.stencil import COPY, TILE, Stencil, node_in_tile, within_margin
 from engine.simulation.simulation import Simulation
 from tests.helpers.device import Array, worst
 from tests.helpers.scenes import body, scene, started
@@ -35,8 +35,8 @@ class Probe:
 
     @ti.kernel
     def set_linear_field(self, slope: ti.types.matrix(3, 3, ti.f64), offset: ti.types.vector(3, ti.f64)):
-        for n in range(self.stencil.tile_count[None] * TILE):
-            x = self.stencil.node_position(n // TILE, n)
+        for n in range(self.stencil.place_count[None] * TILE):
+            x = self.stencil.node_position(n // TILE, node_in_tile(n))
             for corner in range(8):
                 b = self.stencil.source[n // TILE, corner]
                 if b >= 0:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from engine.scene.two_body import Approach, apocentre, approach_state
+from engine.scene.two_body import Approach, apocentre, approach_state, orbit
 from tests.helpers.device import Array
 
 G_N, R = 6.6743e-11, 50e3
@@ -162,5 +162,17 @@ def test_the_nearest_start_lies_on_the_line_of_centres(v, degrees):
     x0, v0 = contact(v, degrees)
     assert found.start == "nearest"
     np.testing.assert_allclose(found.position, 1.1 * x0)
-    np.testing.assert_allclose(found.velocity, v0)
+    np.testing.assert_allclose(np.cross(found.position, found.velocity), np.cross(x0, v0), atol=1e-9 * CONTACT * v)
+    np.testing.assert_allclose(found.velocity @ x0, v0 @ x0, rtol=1e-9, atol=1e-9 * CONTACT * v)
     assert found.duration > 0.0
+
+
+@given(v=st.floats(1.0, 500.0), degrees=st.floats(0.0, 90.0), share=st.floats(0.0, 1.0))
+def test_the_orbit_leads_from_the_start_to_contact(v, degrees, share):
+    found = pair(v, degrees)
+    assume(found.start != "nearest")
+    x0, v0 = contact(v, degrees)
+    there = orbit(found.position, found.velocity, MU / G_N, share * found.duration)
+    here = orbit(*there, MU / G_N, (1.0 - share) * found.duration)
+    np.testing.assert_allclose(here[0], x0, atol=1e-6 * CONTACT)
+    np.testing.assert_allclose(here[1], v0, atol=1e-6 * v)
