@@ -30,6 +30,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "without strength, fracture": {"strength": False, "fracture": None},
     "without shear, strength, fracture": {"shear": False, "strength": False, "fracture": None},
     "without gravity": {"gravity": None},
+    "without contact": {"contact": None},
     "with viscosity": {"viscosity": ViscosityCoefficients(shear=1e5, shock_linear=1.0, shock_quadratic=2.0)},
     "with a wall": {"walls": (Wall(point=(0.0, 0.0, -1e7), friction=0.5),)},
 }

@@ -11,6 +11,7 @@ from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene
 from engine.simulation.initial_conditions import initial_state
 from engine.simulation.simulation import Simulation
+from engine.verification.problems.materials import elastic
 from tests.helpers.device import Array, worst
 from tests.helpers.scenes import advance, rubble_collision, spline, started
 
@@ -21,13 +22,17 @@ ACROSS = 4.0
 ELASTIC = {"fracture": None, "gravity": None, "strength": False}
 
 
+SOFT = elastic(rho0=2700.0, bulk=2.4e6, shear=1.4e6)
+"""Longitudinal waves travel at 40 m/s."""
+
+
 def slab(left: float, right: float, per_cell: int = 4, **changes: object) -> Box:
     """Matter between two planes [m], of regular particles."""
     length = right - left
     lattice = (round(length * per_cell), round(ACROSS * per_cell), round(ACROSS * per_cell))
     position = (0.5 * (left + right), 0.5 * ACROSS, 0.5 * ACROSS)
     return Box.model_validate(
-        {"size": (length, ACROSS, ACROSS), "lattice": lattice, "position": position, "damage": 1.0, **changes}
+        {"size": (length, ACROSS, ACROSS), "lattice": lattice, "position": position, "damage": 1.0, "material": SOFT, **changes}
     )
 
 
@@ -52,7 +57,7 @@ def finished(simulation: Simulation) -> Simulation:
 @pytest.mark.parametrize("gap", [0.0, 0.25, 1.0])
 def test_slabs_touch_when_their_surfaces_are_as_near_as_asked(gap, offset):
     """Wherever they meet between nodes."""
-    speed, start = 10.0, 2.0
+    speed, start = 1.0, 2.0
     left = slab(-4.0 - 0.5 * start + offset, -0.5 * start + offset, velocity=(0.5 * speed, 0.0, 0.0))
     right = slab(0.5 * start + offset, 4.0 + 0.5 * start + offset, velocity=(-0.5 * speed, 0.0, 0.0))
     simulation = finished(started(slabs(left, right, end_time=1.1 * start / speed, contact={"gap": gap})))
@@ -67,15 +72,15 @@ def test_the_depth_of_a_node_is_that_of_the_half_space_that_fills_it():
 
 def test_bodies_fly_freely_until_they_touch():
     """And do not where nodes are shared."""
-    left = slab(-5.0, -1.0, velocity=(5.0, 0.0, 0.0), per_cell=2)
-    right = slab(1.0, 5.0, velocity=(-5.0, 0.0, 0.0), per_cell=2)
+    left = slab(-5.0, -1.0, velocity=(2.0, 0.0, 0.0), per_cell=2)
+    right = slab(1.0, 5.0, velocity=(-2.0, 0.0, 0.0), per_cell=2)
     fate = {}
     for contact in ({}, False):
-        simulation = finished(started(slabs(left, right, end_time=0.14, per_cell=2, contact=contact)))
-        fate[bool(contact is not False)] = float(np.abs(np.abs(simulation.particles.read("v")["v"][:, 0]) - 5.0).max())
+        simulation = finished(started(slabs(left, right, end_time=0.35, per_cell=2, contact=contact)))
+        fate[bool(contact is not False)] = float(np.abs(np.abs(simulation.particles.read("v")["v"][:, 0]) - 2.0).max())
         assert np.isinf(simulation.clock.contact_time[None])
     assert fate[True] < 1e-12
-    assert fate[False] > 1.0
+    assert fate[False] > 0.4
 
 
 def rebound(contact: object) -> tuple[Array, Array]:
@@ -83,7 +88,7 @@ def rebound(contact: object) -> tuple[Array, Array]:
 
     Equal slabs exchange their velocities: they touch for 2L/c, and go on as if they had passed through each other.
     """
-    speed, gap, length = 2.0, 1.5, 4.0
+    speed, gap, length = 0.1, 1.5, 4.0
     left = slab(-length - 0.4, -0.4, per_cell=2, velocity=(speed, 0.0, 0.0))
     right = slab(gap - 0.4, length + gap - 0.4, per_cell=2, velocity=(-speed, 0.0, 0.0))
     state = finished(started(slabs(left, right, end_time=2.0 * gap / speed, per_cell=2, contact=contact)))
@@ -97,7 +102,7 @@ def rebound(contact: object) -> tuple[Array, Array]:
 def test_elastic_slabs_rebound_where_their_surfaces_meet():
     """Where nodes are shared they hang together across the gap."""
     v, astray = rebound({})
-    assert np.abs(v - [-2.0, 2.0]).max() < 0.2
+    assert np.abs(v - [-0.1, 0.1]).max() < 0.015
     assert astray.max() < 0.3
     assert rebound(False)[1].min() > 1.0
 
