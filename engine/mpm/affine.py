@@ -9,21 +9,21 @@ SMALLEST = 1e-30
 
 
 @ti.func
-def affine_velocity(C, dt, j, rate):
+def affine_velocity(C, dt, j, steepest):
     """Return the affine velocity [1/s] of matter that has moved freely for dt: sym(C (I + dt C)^-1) + skew(C).
 
     The skew part keeps angular momentum. The part that strain S = sym(C) sets, S (I + dt S)^-1, is scaled: in dilated
-    matter, J > 1, so that |S| max(J, 1)^(1/3) never grows, and where |S| exceeds the rate of the filter, so that |S|
+    matter, J > 1, so that |S| max(J, 1)^(1/3) never grows, and where |S| exceeds the steepest gradient, so that |S|
     never grows. Nothing opposes what a particle remembers of itself and the grid does not represent.
 
     Args:
         C: affine velocity [1/s].
         dt: time of the motion [s].
         j: det F - 1 before the motion [-].
-        rate: at which motion decays that the grid does not represent [1/s].
+        steepest: gradient that the grid can have and the motion of the bodies can make [1/s].
     """
     S, after, J = symmetric(C), symmetric(moved(C, dt)), 1.0 + j
-    dilated, fast = J * (1.0 + determinant_increment(dt * S)), norm_squared(S) > rate * rate
+    dilated, fast = J * (1.0 + determinant_increment(dt * S)), norm_squared(S) > steepest * steepest
     if dilated > 1.0 or fast:
         free, dilation = moved(S, dt), dilated / ti.max(J, 1.0)
         if fast:

@@ -35,6 +35,7 @@ class Filtered:
     Args:
         response: of one particle.
         rate: at which motion decays that the grid cannot represent [1/s].
+        steepest: gradient of velocity above which the affine motion of a particle does not grow by itself [1/s].
         walled: whether there are walls.
 
     Attributes:
@@ -42,12 +43,12 @@ class Filtered:
         remainder: part of the motion that its projection on the grid lacks, r = q - Pi q.
     """
 
-    def __init__(self, response: Response, rate: float, walled: bool) -> None:
+    def __init__(self, response: Response, rate: float, steepest: float, walled: bool) -> None:
         self.response, self.particles, self.clock = response, response.particles, response.clock
         size = capacity(self.particles.count)
         self.kicked, self.remainder = Motion.field(shape=size), Motion.field(shape=size)
-        self.rate = ti.field(Real, ())
-        self.rate[None] = rate
+        self.rate, self.steepest = ti.field(Real, ()), ti.field(Real, ())
+        self.rate[None], self.steepest[None] = rate, steepest
         self.walled = walled
 
     def stages(self, over_grid: Callable[[Exchange], Stage]) -> tuple[Stage, ...]:
@@ -238,7 +239,7 @@ class Drift:
         half = 0.5 * self.clock.dt[None]
         for p in range(self.particles.count * self.clock.running[None]):
             C = self.particles.C[p]
-            after = affine_velocity(C, half, self.particles.j[p], self.scheme.rate[None])
+            after = affine_velocity(C, half, self.particles.j[p], self.scheme.steepest[None])
             self.particles.C[p] = after
             self.scheme.lose_affine(p, C, after)
             self.scheme.response.move(p, half)

@@ -85,8 +85,10 @@ def scheme(scene: Scene, response: Response) -> Scheme:
     """
     if scene.numerics.transfer == "apic":
         return Apic(response)
-    speed = max(material.longitudinal_speed for material in scene.materials) + speed_of_motion(scene)
-    return Filtered(response, speed / (scene.numerics.filter_time * scene.dx), walled=bool(scene.physics.walls))
+    motion = speed_of_motion(scene)
+    waves = max(material.longitudinal_speed for material in scene.materials)
+    rate = (waves + motion) / (scene.numerics.filter_time * scene.dx)
+    return Filtered(response, rate, motion / scene.dx if motion else rate, walled=bool(scene.physics.walls))
 
 
 def _equation_of_state(scene: Scene) -> EquationOfStateLaw:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from engine.device import backend
+from engine.mpm.filtered import Filtered
 from engine.scene.bodies import Box
 from engine.scene.scene import Numerics, Physics, Scene
 from engine.simulation.initial_conditions import initial_state
@@ -34,28 +35,28 @@ def random_state(spread: float, dx: float) -> dict[str, Array]:
     }
 
 
-def drift(x: Array, q: Motion, dt: float, j: Array, rate: float) -> tuple[Array, Motion]:
-    return x + dt * q.v, Motion(q.v, affine_velocity(q.C, dt, j, rate))
+def drift(x: Array, q: Motion, dt: float, j: Array, steepest: float) -> tuple[Array, Motion]:
+    return x + dt * q.v, Motion(q.v, affine_velocity(q.C, dt, j, steepest))
 
 
 def dense_step(
-    state: dict[str, Array], J: Array, dx: float, dt: float, kick_time: float, rate: float
+    state: dict[str, Array], J: Array, dx: float, dt: float, kick_time: float, scheme: Filtered
 ) -> tuple[Array, Motion, Array]:
     """One step of the filtered transfer (section 1): positions, motion, and which particles share no node at first.
 
     The volume J after the step is the engine's own: it only bounds the affine velocity.
     """
-    q, j = Motion(state["v"], state["C"]), state["j"]
+    q, j, steepest = Motion(state["v"], state["C"]), state["j"], scheme.steepest[None]
     grid = DenseGrid(state["x"], state["mass"], dx)
     kick = forces(state, dx, kick_time)
     kicked, free = q.plus(grid.project(kick)), Motion(q.v + kick.v, 0.5 * (q.C - q.C.transpose(0, 2, 1)))
     alone = grid.alone[:, None]
     q = Motion(np.where(alone, free.v, kicked.v), np.where(alone[..., None], free.C, kicked.C))
-    x, q = drift(state["x"], q, 0.5 * dt, j, rate)
+    x, q = drift(state["x"], q, 0.5 * dt, j, steepest)
     grid = DenseGrid(x, state["mass"], dx)
     remainder = q.plus(grid.project(q), -1.0)
-    q = q.plus(remainder.plus(grid.project(remainder), -1.0), -min(1.0, dt * rate))
-    x, q = drift(x, q, 0.5 * dt, J - 1.0, rate)
+    q = q.plus(remainder.plus(grid.project(remainder), -1.0), -min(1.0, dt * scheme.rate[None]))
+    x, q = drift(x, q, 0.5 * dt, J - 1.0, steepest)
     return x, q, grid.alone
 
 
@@ -74,7 +75,7 @@ def test_one_step_equals_a_dense_grid(cloud, spread):
     cloud.start(**state)
     dt = one_step(cloud)
     found = cloud.particles.read("x", "v", "C", "j")
-    x, q, alone = dense_step(state, 1.0 + found["j"], dx, dt, float(cloud.clock.kick[None]), cloud.scheme.rate[None])
+    x, q, alone = dense_step(state, 1.0 + found["j"], dx, dt, float(cloud.clock.kick[None]), cloud.scheme)
     assert alone.sum() == 0 if spread == 0.3 else alone.sum() > 2
     # the lightest node carries 1e-3 or less of a particle, and round-off of the sums as often
     assert worst(found["v"], q.v, lengths(q.v) + 1.0) < 1e-12
