@@ -43,6 +43,6 @@ def contact_of(scene: Scene, time: float) -> Contact:
     )
     mass = first.mass + second.mass if scene.physics.gravity else 0.0
     position, velocity = orbit(position, velocity, mass, time - scene.start_time)
-    distance, speed = float(np.linalg.norm(position)), float(np.linalg.norm(velocity))
-    approach = float(-position @ velocity) / (distance * speed)
-    return Contact(distance / (first.radius + second.radius) - 1.0, float(np.degrees(np.arccos(approach))))
+    distance, across = float(np.linalg.norm(position)), float(np.linalg.norm(np.cross(position, velocity)))
+    angle = float(np.degrees(np.arctan2(across, -position @ velocity)))
+    return Contact(distance / (first.radius + second.radius) - 1.0, angle)

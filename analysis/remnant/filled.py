@@ -17,7 +17,10 @@ SURFACE = 0.5
 """Distance [h] of the surface beyond the outermost particles."""
 
 VOXELS = 4
-"""Voxels per particle spacing."""
+"""Voxels per particle spacing, fewer where more than `MOST_VOXELS` would be needed."""
+
+MOST_VOXELS = 5e6
+"""Voxels whose distances take some 200 MB."""
 
 
 def filled_volume(position: Array, spacing: float) -> float:
@@ -30,13 +33,13 @@ def filled_volume(position: Array, spacing: float) -> float:
         position: [m], shape [particle_count, 3].
         spacing: particle spacing h [m].
     """
-    edge, margin = spacing / VOXELS, 2.0 * CLOSING * spacing
-    lines = [np.arange(low - margin, high + margin, edge) for low, high in zip(*_bounds(position), strict=True)]
+    margin = 2.0 * CLOSING * spacing
+    centred = position - position.mean(axis=0)
+    along = centred @ np.linalg.svd(centred.T @ centred)[0]
+    low, high = along.min(axis=0) - margin, along.max(axis=0) + margin
+    edge = max(spacing / VOXELS, float((np.prod(high - low) / MOST_VOXELS) ** (1.0 / 3.0)))
+    lines = [np.arange(*ends, edge) for ends in zip(low, high, strict=True)]
     grid = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
-    distance, _ = cKDTree(position).query(grid, distance_upper_bound=CLOSING * spacing)
+    distance, _ = cKDTree(along).query(grid, distance_upper_bound=CLOSING * spacing)
     depth = distance_transform_edt(np.isfinite(distance)) * edge
     return float(np.count_nonzero(depth > (CLOSING - SURFACE) * spacing) * edge**3)
-
-
-def _bounds(position: Array) -> tuple[Array, Array]:
-    return position.min(axis=0), position.max(axis=0)

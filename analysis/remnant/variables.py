@@ -76,7 +76,7 @@ OUTCOMES = {
         for name, length in OTHER_LENGTHS.items()
     },
     "contact_time": Quantity(
-        "time at which the bodies touched, after point-mass contact", "s", "NaN if contact is no part of the scene"
+        "time at which the bodies touched, after point-mass contact", "s", "NaN if they did not, or contact is left out"
     ),
     "contact_offset": Quantity(
         "distance of the centres when the bodies touched, over the sum of their radii, less 1",

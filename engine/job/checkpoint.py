@@ -54,10 +54,11 @@ def load_checkpoint(job: JobDirectory, simulation: Simulation) -> dict[str, floa
         JobError: the checkpoint belongs to another scene or physics version.
     """
     for path in (job.checkpoint, job.previous_checkpoint):
-        dataset = _readable(path, simulation)
+        dataset = _readable(path)
         if dataset is not None:
             refuse_foreign(dataset, simulation.scene, path)
-            return _restore(dataset, simulation)
+            if _is_whole(dataset, simulation):
+                return _restore(dataset, simulation)
     return None
 
 
@@ -85,17 +86,22 @@ def _dimensions(name: str, ndim: int) -> tuple[str, ...]:
     return ("particle", *(f"{name}_{axis}" for axis in range(1, ndim)))
 
 
-def _readable(path: Path, simulation: Simulation) -> xr.Dataset | None:
-    """Content of a checkpoint; `None` where it is missing, damaged, incomplete or not finite."""
+def _readable(path: Path) -> xr.Dataset | None:
+    """Content of a checkpoint that says where it is from; `None` where it is missing or damaged."""
     if not path.exists():
         return None
     try:
         dataset = read_dataset(path)
     except JobError:
         return None
+    return dataset if {*ORIGIN} <= {*dataset.attrs} else None
+
+
+def _is_whole(dataset: xr.Dataset, simulation: Simulation) -> bool:
+    """Whether a checkpoint has all that the next step reads, all of it finite."""
     particles = simulation.particles
-    whole = {*particles.allocated} <= {*dataset.data_vars} and {*ORIGIN, *simulation.clock_state()} <= {*dataset.attrs}
-    return dataset if whole and dataset.sizes["particle"] == particles.count and is_finite(dataset) else None
+    whole = {*particles.allocated} <= {*dataset.data_vars} and {*simulation.clock_state()} <= {*dataset.attrs}
+    return whole and dataset.sizes["particle"] == particles.count and is_finite(dataset)
 
 
 def _restore(dataset: xr.Dataset, simulation: Simulation) -> dict[str, float]:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import taichi as ti
+import taichi.math as tm
 
 from engine.arrays import Scalars
 from engine.device.backend import Real
@@ -14,9 +15,12 @@ from engine.scene.material import Material
 INTERVALS = 512
 """Intervals of the table of depths."""
 
+ABSENT = 1e-5
+"""Ratio of what others fill of a node to what a body fills below which it is round-off of the sum."""
+
 
 def depth_of(filled: Scalars) -> Scalars:
-    """Return how deep [cells] a node lies in a half-space that fills this share of its spline; the integral inverted.
+    """Return how deep [cells] a node lies in a half-space that fills this part of its spline; the integral inverted.
 
     Args:
         filled: from 0 to 1 [-], of any shape.
@@ -30,14 +34,16 @@ def depth_of(filled: Scalars) -> Scalars:
 
 
 @ti.data_oriented
-class Contact:
-    """Two bodies share the motion of a node if the gap between their surfaces there is closed.
+class GeometricContact:
+    """A body shares the motion of a node with the others if the gap between it and them is closed there.
 
     Args:
         materials: one per body.
         dx: grid spacing [m].
         gap: distance of surfaces at which they touch [cells].
     """
+
+    separates = True
 
     def __init__(self, materials: Sequence[Material], dx: float, gap: float) -> None:
         self.table = per_body(full=[material.rho0 * dx**3 for material in materials])
@@ -46,28 +52,36 @@ class Contact:
         self.gap[None] = gap
 
     @ti.func
-    def depth(self, mass, body):
-        """Return the depth of a node that has this mass of a body at the reference density, from the table."""
-        place = ti.min(mass / self.table[body].full, 1.0) * INTERVALS
-        i = ti.min(ti.cast(place, ti.i32), INTERVALS - 1)
-        return self.depths[i] + (place - i) * (self.depths[i + 1] - self.depths[i])
+    def filled(self, mass, body):
+        """Return what a mass [kg] of a body at its reference density fills of a node [-]."""
+        return mass / self.table[body].full
 
     @ti.func
-    def touch(self, deepest, next_deepest):
-        """Return whether the gap, -(deepest + next_deepest), is closed."""
-        return deepest + next_deepest >= -self.gap[None]
+    def touches(self, own, all_bodies):
+        """Return whether the gap is closed between a body and all the others together."""
+        others = all_bodies - own
+        return own > 0.0 and others > ABSENT * own and self.depth(own) + self.depth(others) >= -self.gap[None]
+
+    @ti.func
+    def depth(self, filled):
+        """Return how deep [cells] a node lies, from the table."""
+        position = tm.clamp(filled, 0.0, 1.0) * INTERVALS
+        i = ti.min(ti.cast(position, ti.i32), INTERVALS - 1)
+        return self.depths[i] + (position - i) * (self.depths[i + 1] - self.depths[i])
 
 
 @ti.data_oriented
 class SharedNodes:
     """Bodies touch wherever they share nodes: all are one velocity field."""
 
-    @ti.func
-    def depth(self, mass, body):
-        """Return zero."""
-        return ti.cast(0.0, Real)
+    separates = False
 
     @ti.func
-    def touch(self, deepest, next_deepest):
+    def filled(self, mass, body):
+        """Return 1."""
+        return ti.cast(1.0, Real)
+
+    @ti.func
+    def touches(self, own, all_bodies):
         """Return true."""
         return True

@@ -8,7 +8,7 @@ import taichi as ti
 
 from engine.device.backend import TASK, Real, vec3, vec4
 from engine.mpm.interfaces import ContactLaw, Exchange
-from engine.mpm.spline import REACH, spline_weights
+from engine.mpm.spline import spline_weights
 from engine.mpm.stencil import COPY, TILE, Stencil, node_in_tile
 from engine.mpm.time_step import no_limits, rate_of, tightest
 from engine.state.clock import Clock
@@ -62,28 +62,36 @@ class GridPass:
         for n in range(self.stencil.place_count[None] * TILE * self.clock.running[None]):
             node = node_in_tile(n)
             first, last = self.stencil.place[n // TILE], self.stencil.place[n // TILE + 1]
-            if last - first == 1:
-                self.set_velocity(first, node, self.stencil.sum_of_copies(first, node))
+            if ti.static(self.contact.separates):
+                self.join_bodies(first, last, node)
             else:
-                self.update_shared(first, last, node)
+                self.set_velocity(first, node, self.stencil.sum_of_copies(first, node))
 
     @ti.func
-    def update_shared(self, first, last, node):
-        """Give the bodies of tiles `first` to `last`, without it, one velocity at a node where they touch."""
-        total, most, second = vec4(0.0), ti.cast(-REACH, Real), ti.cast(-REACH, Real)
+    def join_bodies(self, first, last, node):
+        """Give those bodies of tiles `first` to `last`, without it, one velocity that touch the others at a node."""
+        total, filled = vec4(0.0), ti.cast(0.0, Real)
         for tile in range(first, last):
             own = self.stencil.sum_of_copies(tile, node)
-            depth = self.contact.depth(own[3], self.stencil.body[tile])
-            second = ti.max(second, ti.min(most, depth))
-            most = ti.max(most, depth)
             total += own
-        touching = second > -REACH and self.contact.touch(most, second)
-        if touching:
+            filled += self.contact.filled(own[3], self.stencil.body[tile])
+        joint, joined = total, last - first
+        if last - first > 1:
+            joint, joined = vec4(0.0), 0
+            for tile in range(first, last):
+                own = self.stencil.sum_of_copies(tile, node)
+                if self.contact.touches(self.contact.filled(own[3], self.stencil.body[tile]), filled):
+                    joint += own
+                    joined += 1
+        if joined > 1:
             self.clock.report_contact()
         for tile in range(first, last):
-            if not touching:
-                total = self.stencil.sum_of_copies(tile, node)
-            self.set_velocity(tile, node, total)
+            value = joint
+            if joined < last - first:
+                own = self.stencil.sum_of_copies(tile, node)
+                if not self.contact.touches(self.contact.filled(own[3], self.stencil.body[tile]), filled):
+                    value = own
+            self.set_velocity(tile, node, value)
 
     @ti.func
     def set_velocity(self, tile, node, total):

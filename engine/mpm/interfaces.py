@@ -12,13 +12,19 @@ class Boundary(Protocol):
 
 
 class ContactLaw(Protocol):
-    """Where bodies touch (engine/physics.md, section 1)."""
+    """Where bodies touch (engine/physics.md, section 1).
 
-    def depth(self, mass, body):
-        """Return how deep [cells] a node lies in a body that gives it this mass [kg]."""
+    Attributes:
+        separates: whether bodies have motion of their own at a node; if not, the rest is not compiled.
+    """
 
-    def touch(self, deepest, next_deepest):
-        """Return whether the two bodies touch in which a node lies deepest [cells]."""
+    separates: bool
+
+    def filled(self, mass, body):
+        """Return what a mass [kg] of a body at its reference density fills of a node [-]."""
+
+    def touches(self, own, all_bodies):
+        """Return whether a body that fills `own` of a node [-] touches the others, of all that is filled."""
 
 
 class Exchange(Protocol):
@@ -55,7 +61,7 @@ class Exchange(Protocol):
         """
 
     def take_alone(self, p, dx):
-        """Change particle p, which shares no node with another; arguments and result as `take`."""
+        """Change particle p, which shares no node with another of its body or of one that touches; as `take`."""
 
 
 class Stage(Protocol):

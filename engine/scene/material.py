@@ -24,8 +24,8 @@ AnyEquationOfState = Annotated[
 ]
 """Constants of an equation of state; their key `form` chooses which, Tillotson's if it is not given."""
 
-LARGEST_FRICTION = 3.0**0.5
-"""sqrt(J2)/P in triaxial compression at a friction angle of 90 degrees."""
+LARGEST_FRICTION = 1.722
+"""sqrt(J2)/P in triaxial compression at a friction angle of 85 degrees."""
 
 NEEDED = {
     "strength": ("cohesion", "intact_friction", "strength_limit", "melt_energy", "friction"),
@@ -84,11 +84,11 @@ class Material(Frozen):
         return self
 
     @model_validator(mode="after")
-    def _rubs_at_less_than_a_right_angle(self) -> Self:
+    def _has_a_friction_angle(self) -> Self:
         if self.friction_law != "drucker-prager" and self.friction is not None and self.friction >= LARGEST_FRICTION:
             raise ValueError(
-                f"'friction' {self.friction} must be below sqrt(3) with friction_law = \"{self.friction_law}\": "
-                "a friction angle phi has 2 sqrt(3) sin(phi)/(3 - sin(phi))"
+                f"'friction' {self.friction} must be below {LARGEST_FRICTION}, that of 85 degrees, with friction_law = "
+                f"'{self.friction_law}': a friction angle phi has 2 sqrt(3) sin(phi)/(3 - sin(phi))"
             )
         return self
 

@@ -182,7 +182,7 @@ class Scene(Frozen):
     @model_validator(mode="after")
     def _has_one_law_of_friction(self) -> Self:
         laws = sorted({body.material.friction_law for body in self.bodies})
-        if len(laws) > 1:
+        if self.physics.strength and len(laws) > 1:
             raise ValueError(f"'friction_law' must be the same in all bodies of a scene (given {', '.join(laws)})")
         return self
 

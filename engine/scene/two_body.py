@@ -44,7 +44,7 @@ def approach_state(position: Array, velocity: Array, total_mass: float, separati
     gm = G_NEWTON * total_mass
     farthest = apocentre(position, velocity, gm)
     if farthest <= NEAREST_START * float(np.linalg.norm(position)):
-        return _straight_back(position, velocity)
+        return _straight_back(position, velocity, gm)
     state, duration, arrived = _backward(np.concatenate([position, velocity]), gm, separation)
     return Approach(state[:3], state[3:], duration, "separation" if arrived else "apocentre")
 
@@ -80,12 +80,18 @@ def _rate(gm: float) -> Callable[[float, Array], Array]:
     return rate
 
 
-def _straight_back(position: Array, velocity: Array) -> Approach:
-    """Bodies drawn apart along their line of centres, with the radial velocity and the angular momentum of contact."""
-    gap = (NEAREST_START - 1.0) * float(np.linalg.norm(position))
-    radial = float(velocity @ position) / float(position @ position) * position
-    start = radial + (velocity - radial) / NEAREST_START
-    return Approach(position * NEAREST_START, start, gap / float(np.linalg.norm(velocity)), "nearest")
+def _straight_back(position: Array, velocity: Array, gm: float) -> Approach:
+    """Bodies drawn apart along their line of centres, with the radial velocity and the angular momentum of contact.
+
+    They fall back, and so meet faster.
+    """
+    contact, distance = float(np.linalg.norm(position)), _distance(float(np.linalg.norm(position)))
+    distance.terminal = True  # type: ignore[attr-defined]
+    radial = float(velocity @ position) / contact**2 * position
+    start = np.concatenate([position * NEAREST_START, radial + (velocity - radial) / NEAREST_START])
+    longest = 10.0 * (contact**3 / gm) ** 0.5
+    path = solve_ivp(_rate(gm), (0.0, longest), start, method="DOP853", events=distance, rtol=1e-12, atol=1e-9)
+    return Approach(start[:3], start[3:], float(path.t[-1]), "nearest")
 
 
 def _turning_point(time: float, state: Array) -> float:

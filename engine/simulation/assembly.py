@@ -19,7 +19,7 @@ from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
 from engine.laws.viscosity import Inviscid, Viscosity
 from engine.mpm.apic import Apic
-from engine.mpm.contact import Contact, SharedNodes
+from engine.mpm.contact import GeometricContact, SharedNodes
 from engine.mpm.filtered import Filtered
 from engine.mpm.interfaces import Boundary, ContactLaw, Scheme
 from engine.mpm.response import Response
@@ -50,6 +50,10 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
     )
 
 
+STILL = 1e-9
+"""Speed of motion over that of waves below which bodies do not meet."""
+
+
 def gravity(scene: Scene, particles: Particles) -> GravityField:
     """Return self-gravity by a tree, by the sum over all pairs at opening angle 0, uniform gravity, or none.
 
@@ -72,7 +76,7 @@ def walls(scene: Scene) -> Boundary:
 def contact(scene: Scene) -> ContactLaw:
     """Return where bodies touch."""
     if scene.physics.contact and len(scene.bodies) > 1:
-        return Contact(scene.materials, scene.dx, scene.physics.contact.gap)
+        return GeometricContact(scene.materials, scene.dx, scene.physics.contact.gap)
     return SharedNodes()
 
 
@@ -85,10 +89,11 @@ def scheme(scene: Scene, response: Response) -> Scheme:
     """
     if scene.numerics.transfer == "apic":
         return Apic(response)
-    motion = speed_of_motion(scene)
+    motion, physics = speed_of_motion(scene), scene.physics
     waves = max(material.longitudinal_speed for material in scene.materials)
     rate = (waves + motion) / (scene.numerics.filter_time * scene.dx)
-    return Filtered(response, rate, motion / scene.dx if motion else rate, walled=bool(scene.physics.walls))
+    known = motion > STILL * waves and not physics.walls and not physics.uniform_gravity
+    return Filtered(response, rate, min(motion / scene.dx, rate) if known else rate, walled=bool(physics.walls))
 
 
 def _equation_of_state(scene: Scene) -> EquationOfStateLaw:

@@ -28,7 +28,7 @@ Ready = tuple[Simulation, DenseTransfer, DenseTransfer]
 def ready() -> Ready:
     """A collision in the engine and, from the same state on, with and without the usual decomposition."""
     backend.start(threads=1)
-    simulation = in_contact(collision(500, transfer="apic"), CONTACT)
+    simulation = in_contact(collision(500, transfer="apic", contact=None), CONTACT)
     return simulation, baseline(simulation), dense_grid_only(simulation)
 
 

@@ -12,7 +12,7 @@ from tests.helpers.fake_jobs import lattice_ellipsoid
 )
 def test_a_lattice_fills_its_ellipsoid_but_for_the_error_of_the_surface(axes, count, missing):
     points, h = lattice_ellipsoid(axes, count)
-    assert 1.0 - missing < filled_volume(points, h) / (len(points) * h**3) < 1.0
+    assert 1.0 - missing < filled_volume(points, h) / (len(points) * h**3) < 1.05
 
 
 def test_the_volume_does_not_depend_on_place_and_direction():

@@ -164,7 +164,8 @@ def test_the_nearest_start_lies_on_the_line_of_centres(v, degrees):
     np.testing.assert_allclose(found.position, 1.1 * x0)
     np.testing.assert_allclose(np.cross(found.position, found.velocity), np.cross(x0, v0), atol=1e-9 * CONTACT * v)
     np.testing.assert_allclose(found.velocity @ x0, v0 @ x0, rtol=1e-9, atol=1e-9 * CONTACT * v)
-    assert found.duration > 0.0
+    there, _ = orbit(found.position, found.velocity, MU / G_N, found.duration)
+    assert np.linalg.norm(there) == pytest.approx(CONTACT, rel=1e-9)
 
 
 @given(v=st.floats(1.0, 500.0), degrees=st.floats(0.0, 90.0), share=st.floats(0.0, 1.0))
