@@ -1,5 +1,6 @@
 """A scene: the bodies, the parts of physics they obey, and how finely to resolve them. SI units throughout."""
 
+import math
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -54,8 +55,15 @@ class Gravity(Frozen):
     ] = 0.4
 
 
+SPHERE_OF_A_NODE = 4.0 / 3.0 * math.pi * 1.5**3
+"""Volume of the sphere that the spline of a node reaches, in cells."""
+
+
 class Contact(Frozen):
-    """Bodies touch where their surfaces meet, and not where they share nodes (engine/physics.md, section 1)."""
+    """Bodies touch where their surfaces meet, and not where they share nodes (engine/physics.md, section 1).
+
+    Where a body is smaller than the sphere of 1.5 cells that a node reaches, bodies touch where they share nodes.
+    """
 
     gap: Annotated[NonNegative, key("distance of surfaces at which they touch, in cells", "1")] = 0.25
 
@@ -220,6 +228,12 @@ class Scene(Frozen):
         if any(self.period) and self.physics.gravity:
             raise ValueError("'period' repeats space without end: it needs self-gravity off, physics.gravity = false")
         return self
+
+    @property
+    def separates_bodies(self) -> bool:
+        """Whether bodies have motion of their own at nodes: there are several, all large enough to fill one."""
+        smallest = min(body.volume for body in self.bodies) / self.dx**3
+        return self.physics.contact is not None and len(self.bodies) > 1 and smallest >= SPHERE_OF_A_NODE
 
     @property
     def period_blocks(self) -> tuple[int, int, int]:

@@ -75,7 +75,7 @@ def walls(scene: Scene) -> Boundary:
 
 def contact(scene: Scene) -> ContactLaw:
     """Return where bodies touch."""
-    if scene.physics.contact and len(scene.bodies) > 1:
+    if scene.separates_bodies and scene.physics.contact:
         return GeometricContact(scene.materials, scene.dx, scene.physics.contact.gap)
     return SharedNodes()
 

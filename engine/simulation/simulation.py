@@ -152,7 +152,7 @@ class Simulation:
     def _build_blocks(self) -> None:
         """Build the blocks from where the particles were when blocks were last built."""
         state = self.particles.read("origin", "body")
-        body = state["body"] if self.scene.physics.contact else np.zeros_like(state["body"])
+        body = state["body"] if self.scene.separates_bodies else np.zeros_like(state["body"])
         blocks = build_blocks(state["origin"], body, self.scene.period_blocks)
         if len(blocks.origin) > self.stencil.capacity:
             self._make_room(2 * len(blocks.origin))

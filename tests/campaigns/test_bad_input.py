@@ -92,7 +92,10 @@ BAD_STUDIES = {
     "no velocity": (HEAD + "[axes]\nvelocity = [0]\nangle = [5]\n", ["'velocity'", "greater than 0"]),
     "infinite velocity": (HEAD + "[axes]\nvelocity = [inf]\nangle = [5]\n", ["'velocity'", "finite"]),
     "word as velocity": (HEAD + "[axes]\nvelocity = ['fast']\nangle = [5]\n", ["'velocity'", "number", "fast"]),
-    "velocity without orbit": (HEAD + "[axes]\nvelocity = [1e-300]\nangle = [5]\n", ["no scene can be built"]),
+    "velocity without orbit": (
+        HEAD + "gravity = false\n[axes]\nvelocity = [1e-300]\nangle = [5]\n",
+        ["no scene can be built"],
+    ),
     "case inside an axis": (
         HEAD + "[axes]\nviscosity.shear = [1, 2]\n[[cases]]\nvelocity = 100\nangle = 5\nviscosity = false\n",
         ["case 1", "'viscosity' and 'axes.viscosity.shear' are parts of each other"],

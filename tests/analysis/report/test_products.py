@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from analysis.cli import app, main
-from analysis.remnant.fragments import friends_of_friends
+from analysis.remnant.fragments import OTHER_LENGTHS, friends_of_friends
 from analysis.report.products import plots
 from analysis.results.collect import collect
 from analysis.results.tables import printed, reasons, series, shape_table
@@ -53,16 +53,16 @@ def test_every_layout_has_its_table_and_figures(tmp_path: Path, layout: str) -> 
 
 
 def test_clumps_of_a_state_are_sought_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    counts: list[int] = []
+    counts: dict[float, int] = {}
 
-    def counted(position: np.ndarray, *arguments: Any) -> np.ndarray:
-        counts.append(len(position))
-        return friends_of_friends(position, *arguments)
+    def counted(position: np.ndarray, mass: np.ndarray, length: float) -> np.ndarray:
+        counts[length] = counts.get(length, 0) + 1
+        return friends_of_friends(position, mass, length)
 
     monkeypatch.setattr("analysis.remnant.fragments.friends_of_friends", counted)
     coords, done = LAYOUTS["grid"]
     plots(campaign(tmp_path, coords, grid(coords), done))
-    assert len(counts) == done
+    assert sum(counts.values()) == (1 + len(OTHER_LENGTHS)) * done
 
 
 def test_cases_have_a_row_each_and_figures(tmp_path: Path) -> None:

@@ -77,6 +77,6 @@ def test_a_stop_without_a_good_checkpoint_is_a_failure(tmp_path: Path) -> None:
 def test_growth_that_no_guard_notices_is_a_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engine.simulation.guard, "largest_energy_change", lambda scene: np.inf)
     case = BY_NAME[TOO_LONG]
-    outcome = run_case(replace(case, scene=case.scene.model_copy(update={"end_time": -20.0})), tmp_path)
+    outcome = run_case(replace(case, scene=case.scene.model_copy(update={"end_time": 60.0})), tmp_path)
     assert outcome.verdict == FAILED and outcome.measures.energy_growth > LARGEST_GROWTH
     assert outcome.reason.startswith("energy at") and outcome.reason.endswith("of its bound, and no guard noticed")
