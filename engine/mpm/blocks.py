@@ -34,7 +34,7 @@ class Blocks:
         order: particles by block, then by index; ballistic ones come last, shape [particle_count].
         source: for every tile the eight blocks whose copies hold it, or -1; shape [tile_count, 8].
         body: velocity field of every tile, shape [tile_count].
-        place: range of the tiles of every place, one for each velocity field there; shape [place_count + 1].
+        site: range of the tiles of every site, one for each velocity field there; shape [site_count + 1].
     """
 
     origin: Integers
@@ -42,7 +42,7 @@ class Blocks:
     order: Integers
     source: Integers
     body: Integers
-    place: Integers
+    site: Integers
 
 
 def out_of_range(x: NDArray[np.floating], dx: float) -> NDArray[np.bool_]:
@@ -74,13 +74,13 @@ def build_blocks(block: Integers, body: Integers, period: Period = UNBOUNDED) ->
         body: velocity field of each particle, shape [particle_count].
         period: blocks after which space repeats along each axis; 0 is unbounded.
     """
-    places, place, particles = np.unique(_key(block), return_inverse=True, return_counts=True)
-    ballistic = ((particles == 1) & (_neighbour_count(places, period) == 1))[place]
+    sites, site, particles = np.unique(_key(block), return_inverse=True, return_counts=True)
+    ballistic = ((particles == 1) & (_neighbour_count(sites, period) == 1))[site]
     fields = int(body.max(initial=0)) + 1
-    order = np.argsort(np.where(ballistic, len(places) * fields, place * fields + body), kind="stable").astype(np.int32)
-    keys, counts = np.unique((place * fields + body)[~ballistic], return_counts=True)
+    order = np.argsort(np.where(ballistic, len(sites) * fields, site * fields + body), kind="stable").astype(np.int32)
+    keys, counts = np.unique((site * fields + body)[~ballistic], return_counts=True)
     first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-    origin, owner = _coordinates(places[keys // fields]), (keys % fields).astype(np.int32)
+    origin, owner = _coordinates(sites[keys // fields]), (keys % fields).astype(np.int32)
     return Blocks(origin, first, order, *_tiles(origin, owner, period))
 
 
@@ -107,16 +107,16 @@ def _neighbour_count(keys: Integers, period: Period) -> Integers:
 
 
 def _tiles(origin: Integers, body: Integers, period: Period) -> tuple[Integers, Integers, Integers]:
-    """The eight blocks over each tile that any block touches, its velocity field, and the tiles of each place."""
+    """The eight blocks over each tile that any block touches, its velocity field, and the tiles of each site."""
     fields = int(body.max(initial=0)) + 1
     touched = _key(_folded(origin[:, None, :] + CORNERS, period))
-    places = np.unique(touched)
-    place, field = np.divmod(np.unique(_find(places, touched) * fields + body[:, None]), fields)
-    owners = _key(_folded(_coordinates(places)[place][:, None, :] - CORNERS, period))
+    sites = np.unique(touched)
+    site, field = np.divmod(np.unique(_find(sites, touched) * fields + body[:, None]), fields)
+    owners = _key(_folded(_coordinates(sites)[site][:, None, :] - CORNERS, period))
     occupied = np.unique(_key(origin))
     rank = _find(occupied, owners)
     source = _find(_find(occupied, _key(origin)) * fields + body, rank * fields + field[:, None])
-    first = np.searchsorted(place, np.arange(len(places) + 1))
+    first = np.searchsorted(site, np.arange(len(sites) + 1))
     return np.where(rank >= 0, source, -1).astype(np.int32), field.astype(np.int32), first.astype(np.int32)
 
 

@@ -59,9 +59,9 @@ class GridPass:
     @ti.kernel
     def update_grid(self):
         """Sum the copies of every node, of all bodies where they touch, and divide by the mass."""
-        for n in range(self.stencil.place_count[None] * TILE * self.clock.running[None]):
+        for n in range(self.stencil.site_count[None] * TILE * self.clock.running[None]):
             node = node_in_tile(n)
-            first, last = self.stencil.place[n // TILE], self.stencil.place[n // TILE + 1]
+            first, last = self.stencil.site[n // TILE], self.stencil.site[n // TILE + 1]
             if ti.static(self.contact.separates):
                 self.join_bodies(first, last, node)
             else:

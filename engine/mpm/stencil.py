@@ -56,20 +56,20 @@ class Stencil:
         self.particles, self.atomic, self.capacity = particles, on_gpu(), capacity(blocks)
         self.dx = ti.field(ti.f64, ())
         self.dx[None] = dx
-        self.block_count, self.place_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
+        self.block_count, self.site_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.shared_count, self.ballistic_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
         self.owner = ti.field(ti.i32, particles.x.shape)
         self.origin = ti.Vector.field(3, ti.i32, self.capacity)
         self.first = ti.field(ti.i32, self.capacity + 1)
         self.source = ti.field(ti.i32, (8 * self.capacity, 8))
-        self.body, self.place = ti.field(ti.i32, 8 * self.capacity), ti.field(ti.i32, 8 * self.capacity + 1)
+        self.body, self.site = ti.field(ti.i32, 8 * self.capacity), ti.field(ti.i32, 8 * self.capacity + 1)
         self.nodes = vec4.field(shape=self.capacity * COPY)
 
     def set_blocks(self, blocks: Blocks) -> None:
         """Store newly built blocks, in whose order the particles lie; there must be room for them."""
         shared = int(blocks.first[-1])
-        counts = (self.block_count, self.place_count, self.shared_count, self.ballistic_count)
-        sizes = (len(blocks.origin), len(blocks.place) - 1, shared, len(blocks.order) - shared)
+        counts = (self.block_count, self.site_count, self.shared_count, self.ballistic_count)
+        sizes = (len(blocks.origin), len(blocks.site) - 1, shared, len(blocks.order) - shared)
         for field, size in zip(counts, sizes, strict=True):
             field[None] = size
         owner = np.repeat(np.arange(len(blocks.origin), dtype=np.int32), np.diff(blocks.first))
@@ -78,7 +78,7 @@ class Stencil:
         overwrite(self.first, blocks.first)
         overwrite(self.source, blocks.source)
         overwrite(self.body, blocks.body)
-        overwrite(self.place, blocks.place)
+        overwrite(self.site, blocks.site)
 
     @ti.func
     def lowest_node(self, p):

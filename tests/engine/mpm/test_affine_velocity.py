@@ -16,14 +16,14 @@ Scalars = ti.types.ndarray(dtype=ti.f64, ndim=1)
 
 
 @ti.kernel
-def affine(L: Matrices, dt: ti.f64, j: Scalars, rate: ti.f64, result: Matrices):
+def affine(L: Matrices, dt: ti.f64, j: Scalars, steepest: ti.f64, result: Matrices):
     for p in range(L.shape[0]):
-        result[p] = affine_velocity(L[p], dt, j[p], rate)
+        result[p] = affine_velocity(L[p], dt, j[p], steepest)
 
 
-def after_step(L: Array, dt: float, j: Array, rate: float = np.inf) -> Array:
+def after_step(L: Array, dt: float, j: Array, steepest: float = np.inf) -> Array:
     result = np.zeros_like(L)
-    affine(L, dt, j, rate, result)
+    affine(L, dt, j, steepest, result)
     return result
 
 
@@ -77,9 +77,9 @@ def test_isochoric_flow_of_dense_matter_is_exact():
 def test_motion_faster_than_the_filter_does_not_run_away_in_dense_matter():
     """|S| stays where it would grow; a slower flow is exact, and so is one that slows down."""
     j, flow = np.full(1, -0.5), 0.2 * np.diag([1.0, 0.5, 0.0])[None]
-    assert worst(after_step(-flow, 1.0, j, rate=0.1), exact(-flow) * norm(flow) / norm(exact(-flow)), 0.2) < 1e-15
-    assert worst(after_step(-flow, 1.0, j, rate=0.3), exact(-flow), 0.2) < 1e-15
-    assert worst(after_step(flow, 1.0, j, rate=0.1), exact(flow), 0.2) < 1e-15
+    assert worst(after_step(-flow, 1.0, j, steepest=0.1), exact(-flow) * norm(flow) / norm(exact(-flow)), 0.2) < 1e-15
+    assert worst(after_step(-flow, 1.0, j, steepest=0.3), exact(-flow), 0.2) < 1e-15
+    assert worst(after_step(flow, 1.0, j, steepest=0.1), exact(flow), 0.2) < 1e-15
 
 
 def test_fast_motion_of_dilated_matter_obeys_both_bounds():
@@ -89,7 +89,7 @@ def test_fast_motion_of_dilated_matter_obeys_both_bounds():
         (flow, 4.0 * np.linalg.det(np.eye(3) + flow[0])),
         (-flow, 4.0 * np.linalg.det(np.eye(3) - flow[0])),
     ):
-        found = after_step(given, 1.0, j, rate=0.1)
+        found = after_step(given, 1.0, j, steepest=0.1)
         assert norm(found) <= norm(given) * min(1.0, (4.0 / J) ** (1.0 / 3.0)) * (1.0 + 1e-14)
 
 

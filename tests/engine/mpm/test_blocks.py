@@ -64,8 +64,8 @@ def test_every_particle_is_in_exactly_one_block_of_its_body_or_alone(x, seed):
         if owner is not None:
             assert np.array_equal(blocks.origin[owner], block[p])
             assert owned.setdefault(owner, body[p]) == body[p]
-    places = {(*blocks.origin[owner], body) for owner, body in owned.items()}
-    assert len(places) == len(owned) == len(blocks.origin)
+    sites = {(*blocks.origin[owner], body) for owner, body in owned.items()}
+    assert len(sites) == len(owned) == len(blocks.origin)
 
 
 @given(clouds())
@@ -107,11 +107,11 @@ def test_the_tiles_of_all_bodies_at_one_place_stand_together(x, seed):
     blocks = build_blocks(block_of(x, DX), bodies(seed, x))
     tiles = list(tile_sources(blocks))
     found = [
-        [tiles[t] for t in range(first, last)] for first, last in zip(blocks.place[:-1], blocks.place[1:], strict=True)
+        [tiles[t] for t in range(first, last)] for first, last in zip(blocks.site[:-1], blocks.site[1:], strict=True)
     ]
-    assert [tile for place in found for tile in place] == tiles
-    assert all(len({tile for tile, _ in place}) == 1 for place in found)
-    assert len({place[0][0] for place in found}) == len(found)
+    assert [tile for site in found for tile in site] == tiles
+    assert all(len({tile for tile, _ in site}) == 1 for site in found)
+    assert len({site[0][0] for site in found}) == len(found)
 
 
 def tile_of(node: Node) -> Node:

@@ -35,7 +35,7 @@ class Probe:
 
     @ti.kernel
     def set_linear_field(self, slope: ti.types.matrix(3, 3, ti.f64), offset: ti.types.vector(3, ti.f64)):
-        for n in range(self.stencil.place_count[None] * TILE):
+        for n in range(self.stencil.site_count[None] * TILE):
             x = self.stencil.node_position(n // TILE, node_in_tile(n))
             for corner in range(8):
                 b = self.stencil.source[n // TILE, corner]

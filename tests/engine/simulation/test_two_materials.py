@@ -22,7 +22,7 @@ def simulation_of(particles: int, **settings: Any) -> Simulation:
 
 def test_ice_that_hits_basalt_is_compressed_more():
     simulation = simulation_of(200, projectile={"material": "ice"}, materials={"ice": ICE}, gravity=False)
-    # bodies meet when they share nodes, a cell or two early
+    # spheres of particles are rough, and so touch a little early
     simulation.advance(0.0)
     state = simulation.particles.read("j", "body", "mass")
     basalt, ice = (-state["j"][state["body"] == body].min() for body in (0, 1))

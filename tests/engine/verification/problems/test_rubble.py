@@ -13,7 +13,7 @@ def test_the_affine_velocity_of_the_talk_gains_angular_momentum(monkeypatch):
     """C (I + dt C)^-1 in full, the published form, breaks what ours keeps."""
 
     @ti.func
-    def published(C, dt, j, rate):
+    def published(C, dt, j, steepest):
         return C @ (ti.Matrix.identity(ti.f64, 3) + dt * C).inverse()
 
     monkeypatch.setattr("engine.mpm.filtered.affine_velocity", published)
