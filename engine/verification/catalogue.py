@@ -49,7 +49,6 @@ FULL: dict[str, Problem] = {
     "collapse": Collapse(particles=(2000, 16000)),
     "cliff": Cliff(cells=15),
     "rubble": Rubble(particles=1500),
-    "slope": Slope(cells=(48, 96)),
     "stiffness": Stiffness(),
     "runout": Runout(),
 }

@@ -137,7 +137,8 @@ class Slope:
     waves decides how deep the layer shears: dv/dt = a - kappa d8v/dz8, kappa = dx^8/(1764 t_f) (engine/physics.md,
     section 1). It spreads the jump of velocity at the base over l = (kappa t)^(1/8), proportional to dx^(7/8)
     t^(1/8), and what the sheared part lags the plug gains. Another 1 % of the acceleration is the law's own: elastic
-    shear strain raises the normal stress over P by mu^2 P/G. Measurements are in engine/verification/granular.md.
+    shear strain raises the normal stress over P by mu^2 P/G. Layers of 96 cells break up within the time (section 4 of
+    engine/physics.md: friction without dilatancy is ill-posed). Measurements are in engine/verification/granular.md.
 
     The layer shears in plane strain, with a Lode parameter of zero: laws of friction that depend on it have the same
     slope, tan th = sqrt(J2)/P of pure shear, at another friction angle.
@@ -181,7 +182,7 @@ class Slope:
         effective = (fine.pull - slide.acceleration) / (GRAVITY * float(np.cos(fine.angle)))
         return [
             Check.relative(f"acceleration at {self.steep:.0f} deg", "m/s2", slide.acceleration, exact, 0.02),
-            Check.relative("the same, extrapolated with order 7/8", "m/s2", limit, exact, 0.01),
+            Check.relative("the same, extrapolated with order 7/8", "m/s2", limit, exact, 0.015),
             Check.relative("effective friction", "-", effective, fine.friction, inf),
             Check.absolute("displacement thickness of what shears", "cells", slide.lag / fine.scene.dx, 0.0, inf),
             Check.absolute(f"acceleration at {self.gentle:.0f} deg", "m/s2", rest, 0.0, 1e-3 * GRAVITY),
