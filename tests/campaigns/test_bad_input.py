@@ -93,7 +93,7 @@ BAD_STUDIES = {
     "infinite velocity": (HEAD + "[axes]\nvelocity = [inf]\nangle = [5]\n", ["'velocity'", "finite"]),
     "word as velocity": (HEAD + "[axes]\nvelocity = ['fast']\nangle = [5]\n", ["'velocity'", "number", "fast"]),
     "velocity without orbit": (
-        HEAD + "gravity = false\n[axes]\nvelocity = [1e-300]\nangle = [5]\n",
+        HEAD + "[collision]\ngravity = false\n[axes]\nvelocity = [1e-300]\nangle = [5]\n",
         ["no scene can be built"],
     ),
     "case inside an axis": (

@@ -165,9 +165,8 @@ def test_a_job_that_another_process_runs_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_fault_ends_as_failed_with_its_reason(tmp_path: Path) -> None:
-    directory = write_job(
-        tmp_path / "job", velocity=1e6, numerics={"cfl": 1.0, "transfer": "apic"}, gravity=None, contact=None
-    )
+    numerics = {"cfl": 1.0, "transfer": "apic", "particles_per_cell": 4.0}
+    directory = write_job(tmp_path / "job", velocity=1e6, numerics=numerics, gravity=None, contact=None)
     result = run_engine(directory)
     assert result.returncode == 1
     status = JobDirectory(directory).status()
