@@ -33,16 +33,13 @@ def contact_of(scene: Scene, time: float) -> Contact:
         scene: what was simulated.
         time: when they touched [s].
     """
-    bodies = [body for body in scene.bodies if isinstance(body, Sphere)]
-    if len(bodies) != 2 or len(scene.bodies) != 2 or not np.isfinite(time):
+    spheres = [body for body in scene.bodies if isinstance(body, Sphere)]
+    if not len(spheres) == len(scene.bodies) == 2 or not np.isfinite(time):
         return UNKNOWN
-    first, second = bodies
-    position, velocity = (
-        np.subtract(second.position, first.position),
-        np.subtract(second.velocity, first.velocity),
-    )
+    first, second = spheres
+    start = np.subtract(second.position, first.position), np.subtract(second.velocity, first.velocity)
     mass = first.mass + second.mass if scene.physics.gravity else 0.0
-    position, velocity = orbit(position, velocity, mass, time - scene.start_time)
+    position, velocity = orbit(*start, mass, time - scene.start_time)
     distance, across = float(np.linalg.norm(position)), float(np.linalg.norm(np.cross(position, velocity)))
     angle = float(np.degrees(np.arctan2(across, -position @ velocity)))
     return Contact(distance / (first.radius + second.radius) - 1.0, angle)

@@ -117,7 +117,7 @@ def _tiles(origin: Integers, body: Integers, period: Period) -> tuple[Integers, 
     rank = _find(occupied, owners)
     source = _find(_find(occupied, _key(origin)) * fields + body, rank * fields + field[:, None])
     first = np.searchsorted(site, np.arange(len(sites) + 1))
-    return np.where(rank >= 0, source, -1).astype(np.int32), field.astype(np.int32), first.astype(np.int32)
+    return source.astype(np.int32), field.astype(np.int32), first.astype(np.int32)
 
 
 def _find(keys: Integers, wanted: Integers) -> Integers:

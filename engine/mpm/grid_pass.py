@@ -70,17 +70,13 @@ class GridPass:
     @ti.func
     def join_bodies(self, first, last, node):
         """Give those bodies of tiles `first` to `last`, without it, one velocity that touch the others at a node."""
-        total, filled = vec4(0.0), ti.cast(0.0, Real)
-        for tile in range(first, last):
-            own = self.stencil.sum_of_copies(tile, node)
-            total += own
-            filled += self.contact.filled(own[3], self.stencil.body[tile])
-        joint, joined = total, last - first
+        filled, joint, joined = ti.cast(0.0, Real), vec4(0.0), 0
         if last - first > 1:
-            joint, joined = vec4(0.0), 0
+            for tile in range(first, last):
+                filled += self.filled(tile, self.stencil.sum_of_copies(tile, node))
             for tile in range(first, last):
                 own = self.stencil.sum_of_copies(tile, node)
-                if self.contact.touches(self.contact.filled(own[3], self.stencil.body[tile]), filled):
+                if self.contact.touches(self.filled(tile, own), filled):
                     joint += own
                     joined += 1
         if joined > 1:
@@ -89,9 +85,14 @@ class GridPass:
             value = joint
             if joined < last - first:
                 own = self.stencil.sum_of_copies(tile, node)
-                if not self.contact.touches(self.contact.filled(own[3], self.stencil.body[tile]), filled):
+                if not self.contact.touches(self.filled(tile, own), filled):
                     value = own
             self.set_velocity(tile, node, value)
+
+    @ti.func
+    def filled(self, tile, own):
+        """Return what the body of a tile fills of a node to which it gives momentum and mass `own` [-]."""
+        return self.contact.filled(own[3], self.stencil.body[tile])
 
     @ti.func
     def set_velocity(self, tile, node, total):

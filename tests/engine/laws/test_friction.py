@@ -6,6 +6,7 @@ import pytest
 from engine.laws.friction import FRICTION_LAWS, lode_parameter
 from engine.scene.material import named
 from engine.verification.material_point import MaterialPoint
+from engine.verification.problems.friction_angle import in_compression, in_extension
 from tests.helpers.device import Array, evaluate
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -14,15 +15,6 @@ ANGLES = np.deg2rad([0.0, 1.0, 15.0, 30.0, 40.0, 60.0, 85.0])
 LAWS = list(FRICTION_LAWS)
 CONES = ["mohr-coulomb", "matsuoka-nakai"]
 """Laws that have a friction angle."""
-
-
-def in_compression(phi: Array | float) -> Array:
-    """sqrt(J2)/P of triaxial compression at a friction angle [rad]."""
-    return np.asarray(2.0 * np.sqrt(3.0) * np.sin(phi) / (3.0 - np.sin(phi)))
-
-
-def in_extension(phi: Array | float) -> Array:
-    return np.asarray(2.0 * np.sqrt(3.0) * np.sin(phi) / (3.0 + np.sin(phi)))
 
 
 def directions(count: int) -> Array:
@@ -56,28 +48,28 @@ def test_the_lode_parameter_is_one_in_compression_and_minus_one_in_extension():
 
 @pytest.mark.parametrize("name", LAWS)
 def test_the_coefficient_is_that_of_triaxial_compression(name):
-    for mu in in_compression(ANGLES):
+    for mu in map(in_compression, ANGLES):
         assert coefficient(name, mu, directions(1))[0] == pytest.approx(mu, rel=1e-7, abs=1e-15)
 
 
 @pytest.mark.parametrize("name", CONES)
 def test_cones_with_a_friction_angle_have_it_in_extension_too(name):
     for phi in ANGLES:
-        found = coefficient(name, float(in_compression(phi)), directions(2)[1:])[0]
-        assert found == pytest.approx(float(in_extension(phi)), rel=1e-6, abs=1e-15)
+        found = coefficient(name, in_compression(phi), directions(2)[1:])[0]
+        assert found == pytest.approx(in_extension(phi), rel=1e-6, abs=1e-15)
 
 
 def test_mohr_coulomb_is_the_friction_angle_on_the_weakest_plane():
     """sin(phi) = (s1 - s3)/(s1 + s3), whatever s2."""
     for phi in ANGLES:
-        s1, _, s3 = at_the_limit("mohr-coulomb", float(in_compression(phi)), directions(2000)).T
+        s1, _, s3 = at_the_limit("mohr-coulomb", in_compression(phi), directions(2000)).T
         np.testing.assert_allclose((s1 - s3) / (s1 + s3), np.sin(phi), atol=1e-11)
 
 
 def test_matsuoka_nakai_keeps_the_ratio_of_invariants():
     """I1 I2/I3 = 9 + 8 tan^2(phi)."""
     for phi in ANGLES[:-1]:
-        s1, s2, s3 = at_the_limit("matsuoka-nakai", float(in_compression(phi)), directions(2000)).T
+        s1, s2, s3 = at_the_limit("matsuoka-nakai", in_compression(phi), directions(2000)).T
         ratio = (s1 + s2 + s3) * (s1 * s2 + s2 * s3 + s3 * s1) / (s1 * s2 * s3)
         np.testing.assert_allclose(ratio, 9.0 + 8.0 * np.tan(phi) ** 2, rtol=1e-11)
 
@@ -85,12 +77,12 @@ def test_matsuoka_nakai_keeps_the_ratio_of_invariants():
 @pytest.mark.parametrize("name", CONES)
 def test_cohesionless_rock_bears_no_tension(name):
     for phi in ANGLES:
-        assert at_the_limit(name, float(in_compression(phi)), directions(2000)).min() > -1e-9
+        assert at_the_limit(name, in_compression(phi), directions(2000)).min() > -1e-9
 
 
 def test_the_circular_cone_of_forty_degrees_bears_tension():
     """What the laws above are for."""
-    assert at_the_limit("drucker-prager", float(in_compression(np.deg2rad(40.0))), directions(2000)).min() < -0.08
+    assert at_the_limit("drucker-prager", in_compression(np.deg2rad(40.0)), directions(2000)).min() < -0.08
 
 
 @pytest.mark.parametrize("name", LAWS)
