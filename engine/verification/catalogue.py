@@ -7,6 +7,7 @@ from engine.verification.problems.collapse import Collapse
 from engine.verification.problems.column import Column
 from engine.verification.problems.ellipsoid import Ellipsoid
 from engine.verification.problems.expansion import Expansion
+from engine.verification.problems.fallback import Fallback
 from engine.verification.problems.hugoniot import MURNAGHAN, Hugoniot
 from engine.verification.problems.hydrostatic import Hydrostatic
 from engine.verification.problems.infall import Infall
@@ -38,6 +39,7 @@ SHORT: dict[str, Problem] = {
         Ellipsoid(),
         StaticLens(),
         ShearJump(),
+        Fallback(),
     )
 }
 
@@ -45,10 +47,12 @@ FULL: dict[str, Problem] = {
     **SHORT,
     "hydrostatic": Hydrostatic(particles=20000, end_time=3000.0, seeds=(1, 2, 3, 4, 5)),
     "column": Column(cells=(8, 16, 32, 64, 128)),
-    "hugoniot": Hugoniot(speeds=(25.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0), cells=320),
+    "hugoniot": Hugoniot(speeds=(25.0, 50.0, 100.0, 200.0, 500.0, 1000.0), cells=320),
+    "hugoniot_strong": Hugoniot(speeds=(2000.0,), cells=160, name="hugoniot_strong"),
     "collapse": Collapse(particles=(2000, 16000)),
     "cliff": Cliff(cells=15),
     "rubble": Rubble(particles=1500),
     "stiffness": Stiffness(),
     "runout": Runout(),
+    "fallback": Fallback(particles=(1000, 4000)),
 }

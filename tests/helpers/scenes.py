@@ -51,6 +51,7 @@ def started(given: Scene, **state: Array) -> Simulation:
 def advance(simulation: Simulation, steps: int) -> Simulation:
     """At least this many steps."""
     while simulation.step < steps:
+        assert not simulation.finished
         simulation.advance(simulation.scene.end_time)
     return simulation
 
