@@ -10,7 +10,6 @@ from engine.scene.bodies import Box
 from engine.scene.material import Material, named
 from engine.scene.murnaghan import MurnaghanParameters
 from engine.scene.scene import Numerics, Physics, Scene, ViscosityCoefficients
-from engine.simulation.initial_conditions import initial_state
 from engine.verification.check import Check
 from engine.verification.harness import Harness, State
 
@@ -75,7 +74,7 @@ class Impact:
 
     Attributes:
         up: half their relative speed [m/s].
-        cells: thickness of one slab in cells, even.
+        cells: thickness of one slab in cells, a multiple of four.
         dx: grid spacing [m]; the problem has no scale but this one.
         material: of both slabs.
     """
@@ -98,26 +97,29 @@ class Impact:
     def scene(self) -> Scene:
         """Both slabs, until the front has passed nine tenths of them."""
         across, along = 4.0 * self.dx, 8 if self.across == 4 else 5
-        body = Box(
-            size=(2.0 * self.cells * self.dx, across, across),
-            lattice=(along * self.cells // 2, self.across, self.across),
-            position=(0.0, 0.5 * across, 0.5 * across),
-            material=self.material,
+        slabs = tuple(
+            Box(
+                size=(self.cells * self.dx, across, across),
+                lattice=(along * self.cells // 4, self.across, self.across),
+                position=(-0.5 * toward * self.cells * self.dx, 0.5 * across, 0.5 * across),
+                velocity=(toward * self.up, 0.0, 0.0),
+                material=self.material,
+            )
+            for toward in (1, -1)
         )
         shock = ViscosityCoefficients(shock_linear=0.5, shock_quadratic=1.5)
         return Scene(
-            bodies=(body,),
+            bodies=slabs,
             period=(None, across, across),
             end_time=0.9 * self.cells * self.dx / Shock(self.up, self.material).Us,
-            physics=Physics(shear=False, strength=False, fracture=None, gravity=None, viscosity=shock),
+            physics=Physics(shear=False, strength=False, fracture=None, gravity=None, contact=None, viscosity=shock),
             numerics=Numerics(particles_per_cell=along * self.across**2 / 64.0),
         )
 
     def measure(self, harness: Harness) -> dict[str, float]:
         """Return Us [m/s], P [Pa], rho/rho0 - 1 (`compression`) [-] and E [J/kg] of a run."""
         scene = self.scene
-        x = initial_state(scene)["x"][:, 0]
-        simulation = harness.start(scene, v=np.outer(-self.up * np.sign(x), [1.0, 0.0, 0.0]))
+        simulation = harness.start(scene)
         half, end = (harness.run_until(simulation, part * scene.end_time) for part in (0.5, 1.0))
         first, last = (_front(state, 2 * self.across**2) for state in (half, end))
         distance = np.abs(end.x[:, 0])
