@@ -63,7 +63,14 @@ def _materials() -> list[ExtremeCase]:
         ExtremeCase("friction", f"{mu:g}", broken(impact(materials={"basalt": {"friction": mu}})))
         for mu in (0.0, 2.0, 100.0)
     ]
-    return moduli + contrasts + frictions
+    laws = [
+        ExtremeCase(
+            "friction", f"{law}, {mu:g}", broken(impact(materials={"basalt": {"friction": mu, "friction_law": law}}))
+        )
+        for law in ("mohr-coulomb", "matsuoka-nakai")
+        for mu in (0.0, 1.7)
+    ]
+    return moduli + contrasts + frictions + laws
 
 
 def _impacts() -> list[ExtremeCase]:
@@ -159,6 +166,9 @@ def _parts() -> list[ExtremeCase]:
         ExtremeCase("parts", "without energy", impact().model_copy(update={"physics": Physics(energy=False)})),
         ExtremeCase("parts", "fluid", impact().model_copy(update={"physics": FLUID})),
         ExtremeCase("parts", "set talk", impact(parameter_set="talk")),
+        ExtremeCase("parts", "set rubble", impact(parameter_set="rubble")),
+        ExtremeCase("parts", "bodies share nodes", impact(contact=False)),
+        ExtremeCase("parts", "bodies share nodes, 5 km/s", impact(5e3, contact=False)),
         ExtremeCase("parts", "viscosity 3e5 m2/s", impact(viscosity=ViscosityCoefficients(shear=3e5))),
         ExtremeCase("parts", "shock viscosity, 5 km/s", impact(5e3, viscosity=SHOCK)),
         ExtremeCase("parts", "sound speed x 0.1, 10 m/s", impact(10.0, sound_speed=0.1)),
