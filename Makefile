@@ -18,7 +18,7 @@ THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; 
 	[ $$code -ne 0 ] || code=$$drawn; exit $$code
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign resume plan status plots accuracy stability test test-slow bench bench-gravity lint clean
+.PHONY: help install campaign resume plan status plots accuracy comparison stability test test-slow bench bench-gravity lint clean
 
 help: ## explain all targets
 	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
@@ -51,6 +51,11 @@ accuracy: $(INSTALLED) ## vary every numerical setting of scenes and of a collis
 	@$(RUN) engine accuracy '$(RUNS)/verification' $(if $(WORKERS),--workers $(WORKERS))
 	@$(RUN) campaigns run accuracy --runs '$(RUNS)' $(RESOURCES) ; code=$$?; \
 		[ $$code -gt 1 ] || $(RUN) analysis accuracy '$(RUNS)/accuracy'; drawn=$$?; \
+		[ $$code -ne 0 ] || code=$$drawn; exit $$code
+
+comparison: $(INSTALLED) ## collisions that other methods have computed, by law of friction, beside what they find
+	@$(RUN) campaigns run comparison --runs '$(RUNS)' $(RESOURCES) ; code=$$?; \
+		[ $$code -gt 1 ] || $(RUN) analysis comparison '$(RUNS)/comparison'; drawn=$$?; \
 		[ $$code -ne 0 ] || code=$$drawn; exit $$code
 
 stability: $(INSTALLED) ## run stiff and extreme cases; each is stable, or stopped with a reason

@@ -1,4 +1,4 @@
-"""The command line: `python -m analysis plots CAMPAIGN`, `collect CAMPAIGN`, `accuracy CAMPAIGN` and `remnant JOB`."""
+"""The command line: `python -m analysis plots CAMPAIGN`, and `collect`, `accuracy`, `comparison`; and `remnant JOB`."""
 
 import sys
 from pathlib import Path
@@ -7,6 +7,7 @@ import typer
 import xarray as xr
 
 from analysis.accuracy.report import write_accuracy
+from analysis.comparison.report import write_comparison
 from analysis.remnant.fragments import clumps_of
 from analysis.remnant.outcome import latest, measure
 from analysis.remnant.variables import OUTCOMES
@@ -46,6 +47,17 @@ def collect(campaign: Path) -> None:
 def accuracy(campaign: Path) -> None:
     """Compare the cases of a campaign that varies one setting at a time: what each costs and changes."""
     results, text, written = write_accuracy(campaign)
+    typer.echo(text)
+    for line in reasons(results):
+        typer.echo(line)
+    typer.echo("written: " + ", ".join(str(path) for path in written))
+    _fail_on_damage(results)
+
+
+@app.command()
+def comparison(campaign: Path) -> None:
+    """Show the cases of a campaign beside what other methods find in the same collisions."""
+    results, text, written = write_comparison(campaign)
     typer.echo(text)
     for line in reasons(results):
         typer.echo(line)

@@ -1,0 +1,1 @@
+"""A campaign beside what other methods find in the same collisions."""
