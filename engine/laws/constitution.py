@@ -6,7 +6,15 @@ Every particle stores j = det F - 1 and the Kirchhoff stress tau = J sigma; laws
 import taichi as ti
 
 from engine.device.tensors import determinant_increment, deviator, identity, pack, symmetric, unpack
-from engine.laws.interfaces import DamageLaw, DissipationLaw, EnergyLaw, EquationOfStateLaw, ShearLaw, ViscosityLaw
+from engine.laws.interfaces import (
+    DamageLaw,
+    DissipationLaw,
+    EnergyLaw,
+    EquationOfStateLaw,
+    PackingLaw,
+    ShearLaw,
+    ViscosityLaw,
+)
 from engine.state.particles import Particles
 
 
@@ -31,6 +39,7 @@ class Constitution:
         eos: equation of state, which also has the reference density.
         energy: internal energy.
         dissipation: account of what becomes heat.
+        packing: of broken rock.
         shear: shear stress, with its strength.
         damage: damage, with its growth.
         viscosity: viscous stress.
@@ -42,12 +51,13 @@ class Constitution:
         eos: EquationOfStateLaw,
         energy: EnergyLaw,
         dissipation: DissipationLaw,
+        packing: PackingLaw,
         shear: ShearLaw,
         damage: DamageLaw,
         viscosity: ViscosityLaw,
     ) -> None:
         self.particles, self.eos, self.energy, self.dissipation = particles, eos, energy, dissipation
-        self.shear, self.damage, self.viscosity = shear, damage, viscosity
+        self.packing, self.shear, self.damage, self.viscosity = packing, shear, damage, viscosity
 
     @ti.func
     def update(self, p, L, dt):
@@ -71,8 +81,8 @@ class Constitution:
         before = unpack(self.particles.tau[p])
         half_work = 0.5 / rho0 * ddot(before, strain)
         E, D = self.energy.after(p, 2.0 * half_work), self.damage.value(p)
-        J = 1.0 + j
-        P, c2 = self.eos.evaluate(p, -j / J, E, body)
+        J, dilation = 1.0 + j, self.packing.dilation(p)
+        P, c2 = self.eos.evaluate(p, (dilation - j) / J, E, body)
         if P < 0.0:
             P *= 1.0 - D
         s = self.shear.stress(p, H, growth, J, P, E, D, body)
@@ -81,12 +91,12 @@ class Constitution:
         self.particles.j[p], self.particles.tau[p] = j, pack(tau)
         # trapezoidal rule: the work of the mean stress, so that elastic energy does not drift
         self.energy.work(p, half_work, 0.5 / rho0 * ddot(tau, strain))
-        self.dissipate(p, before, tau, J * stress, strain)
+        self.dissipate(p, before, tau, J * stress, strain, P * (self.packing.dilation(p) - dilation))
         self.damage.grow(p, s / J, P, dt, body)
         return self.signal_speed_of(c2, body), diffusivity
 
     @ti.func
-    def dissipate(self, p, before, after, viscous, strain):
+    def dissipate(self, p, before, after, viscous, strain, lifted):
         """Account for the work of shear stress that elastic strain does not store, and for that of viscous stress.
 
         Args:
@@ -94,13 +104,14 @@ class Constitution:
             before, after: Kirchhoff stress before and after the step [Pa].
             viscous: viscous part of that after it [Pa].
             strain: logarithmic strain of the step [-].
+            lifted: work of dilatancy against pressure [J/m^3], which it takes from that of shear.
         """
         body = self.particles.body[p]
         s0, s = deviator(before), deviator(after)
         stored = self.shear.elastic_energy(s, body) - self.shear.elastic_energy(s0, body)
         work = ddot(0.5 * (s0 + s) - deviator(viscous), strain)
         rho0 = self.eos.rho0(body)
-        self.dissipation.stress(p, (work - stored) / rho0, ddot(viscous, strain) / rho0)
+        self.dissipation.stress(p, (work - stored - lifted) / rho0, ddot(viscous, strain) / rho0)
 
     @ti.func
     def rest(self, p):
@@ -121,8 +132,8 @@ class Constitution:
     @ti.func
     def signal_speed(self, p):
         """Return the signal speed [m/s] in the present state of particle p."""
-        body, J = self.particles.body[p], 1.0 + self.particles.j[p]
-        _, c2 = self.eos.evaluate(p, -self.particles.j[p] / J, self.energy.after(p, 0.0), body)
+        body, j = self.particles.body[p], self.particles.j[p]
+        _, c2 = self.eos.evaluate(p, (self.packing.dilation(p) - j) / (1.0 + j), self.energy.after(p, 0.0), body)
         return self.signal_speed_of(c2, body)
 
     @ti.func

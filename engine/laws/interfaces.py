@@ -116,14 +116,44 @@ class StrengthLaw(Protocol):
     def bears_shear(self, P, D):
         """Return whether there may be any shear stress at a pressure [Pa] and a damage [-]."""
 
-    def limit(self, P, E, D, s, body):
+    def limit(self, p, P, E, D, s, body):
         """Return the largest sqrt(J2) [Pa]; infinite where nothing limits it.
 
         Args:
+            p: index of the particle.
             P: pressure [Pa], positive in compression.
             E: specific internal energy [J/kg].
             D: damage [-].
             s: direction of the deviatoric stress, of any size, positive in tension.
+            body: index of the body.
+        """
+
+
+class PackingLaw(Protocol):
+    """How loosely broken rock is packed (engine/physics.md, section 4)."""
+
+    def dilation(self, p):
+        """Return J_c - 1 [-], with the J_c = rho0/rho above which particle p bears no pressure once it is broken."""
+
+    def friction(self, p, mu, P, body):
+        """Return the friction coefficient [-] in triaxial compression of particle p.
+
+        Args:
+            p: index of the particle.
+            mu: that of the densest packing [-].
+            P: pressure [Pa].
+            body: index of the body.
+        """
+
+    def shear(self, p, shear, J, P, D, body):
+        """Change the packing of particle p; called after its strength has limited the stress.
+
+        Args:
+            p: index of the particle.
+            shear: plastic shear sqrt(2 e:e) of the step, of the plastic strain e [-].
+            J: rho0/rho after the step [-].
+            P: pressure [Pa].
+            D: damage [-].
             body: index of the body.
         """
 

@@ -19,7 +19,7 @@ from engine.device.tensors import (
     pack,
     unpack,
 )
-from engine.laws.interfaces import StrengthLaw
+from engine.laws.interfaces import PackingLaw, StrengthLaw
 from engine.laws.strength import return_factor
 from engine.scene.material import Material
 from engine.state.particles import Particles
@@ -62,11 +62,14 @@ class Hencky:
     Args:
         particles: state of the particles.
         strength: largest sqrt(J2).
+        packing: of broken rock, which yielding changes.
         materials: one per body.
     """
 
-    def __init__(self, particles: Particles, strength: StrengthLaw, materials: Sequence[Material]) -> None:
-        self.b_minus_I, self.strength = particles.require("b_minus_I"), strength
+    def __init__(
+        self, particles: Particles, strength: StrengthLaw, packing: PackingLaw, materials: Sequence[Material]
+    ) -> None:
+        self.b_minus_I, self.strength, self.packing = particles.require("b_minus_I"), strength, packing
         self.table = per_body(modulus=[material.shear_modulus for material in materials])
 
     @ti.func
@@ -75,16 +78,18 @@ class Hencky:
 
         Where Y = 0 the stored strain is zero.
         """
-        G, strain, remaining = self.modulus(body), mat3(0.0), vec6(0.0)
+        G, strain, remaining, shear = self.modulus(body), mat3(0.0), vec6(0.0), ti.cast(0.0, Real)
         if self.strength.bears_shear(P, D):
             remaining = deform(self.b_minus_I[p], H, growth)
             strain = deviator(half_log(unpack(remaining)))
-            Y = self.strength.limit(P, E, D, strain, body)
+            Y = self.strength.limit(p, P, E, D, strain, body)
             factor = return_factor(2.0 * G / J * ti.sqrt(0.5 * norm_squared(strain)), Y)
             if factor < 1.0:
+                shear = (1.0 - factor) * ti.sqrt(2.0 * norm_squared(strain))
                 strain *= factor
                 remaining = pack(exp_minus_identity(2.0 * strain))
         self.b_minus_I[p] = remaining
+        self.packing.shear(p, shear, J, P, D, body)
         return 2.0 * G * strain
 
     @ti.func

@@ -8,6 +8,7 @@ import taichi.math as tm
 from engine.device.backend import Real
 from engine.device.fields import per_body
 from engine.laws.friction import FRICTION_LAWS
+from engine.laws.interfaces import PackingLaw
 from engine.scene.material import Material
 
 
@@ -17,9 +18,11 @@ class Strength:
 
     Args:
         materials: one per body, of one law of friction.
+        packing: of broken rock.
     """
 
-    def __init__(self, materials: Sequence[Material]) -> None:
+    def __init__(self, materials: Sequence[Material], packing: PackingLaw) -> None:
+        self.packing = packing
         self.friction = FRICTION_LAWS[materials[0].friction_law]()
         constants = ("cohesion", "intact_friction", "strength_limit", "melt_energy", "friction")
         self.table = per_body(**{name: [material.known(name) for material in materials] for name in constants})
@@ -30,14 +33,15 @@ class Strength:
         return P > 0.0 or D < 1.0
 
     @ti.func
-    def limit(self, P, E, D, s, body):
+    def limit(self, p, P, E, D, s, body):
         """Return Y = (1 - D) Y_i + D Y_d [Pa]."""
         m = self.table[body]
         confining = ti.max(P, 0.0)
         friction, rise = m.intact_friction * confining, m.strength_limit - m.cohesion
         intact = m.cohesion + friction * rise / (rise + friction)
         intact *= ti.min(ti.max(1.0 - E / m.melt_energy, 0.0), 1.0)
-        damaged = ti.min(self.friction.coefficient(m.friction, s) * confining, intact)
+        mu = self.packing.friction(p, m.friction, P, body)
+        damaged = ti.min(self.friction.coefficient(mu, s) * confining, intact)
         return (1.0 - D) * intact + D * damaged
 
 
@@ -51,7 +55,7 @@ class Unlimited:
         return True
 
     @ti.func
-    def limit(self, P, E, D, s, body):
+    def limit(self, p, P, E, D, s, body):
         """Return infinity."""
         return ti.cast(tm.inf, Real)
 

@@ -56,6 +56,16 @@ class Material(Frozen):
         Literal["drucker-prager", "mohr-coulomb", "matsuoka-nakai"],
         key("how friction depends on the direction of shear; `friction` is that of triaxial compression"),
     ] = "drucker-prager"
+    critical_density: Annotated[
+        Positive | None,
+        key("density rho_c to which shear loosens broken rock; without it, it stays as dense", "kg m-3"),
+    ] = None
+    dilatancy: Annotated[
+        Positive | None, key("largest plastic dilation by plastic shear; `friction` falls by it towards rho_c", "1")
+    ] = None
+    crushing_pressure: Annotated[
+        Positive | None, key("pressure at which shear leaves half of the pores of rho_c; without it, all", "Pa")
+    ] = None
     weibull_k: Annotated[Positive | None, key("Weibull coefficient k: flaws per volume, k strain^m", "m-3")] = None
     weibull_m: Annotated[
         Annotated[Number, Field(ge=1.0, allow_inf_nan=False)] | None, key("Weibull exponent m of flaws", "1")
@@ -89,6 +99,21 @@ class Material(Frozen):
             raise ValueError(
                 f"'friction' {self.friction} must be below {LARGEST_FRICTION}, that of 85 degrees, with friction_law = "
                 f"'{self.friction_law}': a friction angle phi has 2 sqrt(3) sin(phi)/(3 - sin(phi))"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _loosens_and_dilates(self) -> Self:
+        if (self.critical_density is None) != (self.dilatancy is None):
+            raise ValueError("'critical_density' and 'dilatancy' belong together: give both or none")
+        if self.crushing_pressure is not None and self.dilatancy is None:
+            raise ValueError("'crushing_pressure' needs 'critical_density' and 'dilatancy'")
+        if self.critical_density is not None and self.critical_density >= self.rho0:
+            raise ValueError(f"'critical_density' {self.critical_density} kg/m3 must be below 'rho0' {self.rho0} kg/m3")
+        if self.dilatancy is not None and (self.friction is None or self.dilatancy > 0.5 * self.friction):
+            raise ValueError(
+                f"'dilatancy' {self.dilatancy} must be at most half of 'friction', {self.friction}: rubble looser than "
+                "critical has friction - 2 dilatancy"
             )
         return self
 

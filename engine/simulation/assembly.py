@@ -13,7 +13,8 @@ from engine.laws.damage import Damage, Intact
 from engine.laws.dissipation import Dissipation, NoDissipation
 from engine.laws.energy import InternalEnergy, NoInternalEnergy
 from engine.laws.fracture import Fracture, Unbreakable
-from engine.laws.interfaces import DamageLaw, DissipationLaw, EquationOfStateLaw, ShearLaw
+from engine.laws.interfaces import DamageLaw, DissipationLaw, EquationOfStateLaw, PackingLaw, ShearLaw
+from engine.laws.packing import AsDenseAsRock, CriticalState
 from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import ColdTillotson, Tillotson
@@ -38,13 +39,14 @@ def constitution(scene: Scene, particles: Particles) -> Constitution:
         scene: its physics and materials.
         particles: fields in which the laws keep their state.
     """
-    physics = scene.physics
+    physics, packing = scene.physics, _packing(scene, particles)
     return Constitution(
         particles,
         _equation_of_state(scene),
         InternalEnergy(particles, scene.numerics.transfer_heat) if physics.energy else NoInternalEnergy(),
         _dissipation(scene, particles),
-        _shear(scene, particles),
+        packing,
+        _shear(scene, particles, packing),
         _damage(scene, particles),
         Viscosity(physics.viscosity, scene.dx) if physics.viscosity else Inviscid(),
     )
@@ -113,12 +115,18 @@ def _dissipation(scene: Scene, particles: Particles) -> DissipationLaw:
     return Dissipation(particles, filtered, physics.strength, physics.viscosity is not None)
 
 
-def _shear(scene: Scene, particles: Particles) -> ShearLaw:
+def _packing(scene: Scene, particles: Particles) -> PackingLaw:
+    """Dilatancy of rubble where a material has a critical density, or none."""
+    loosens = scene.physics.strength and any(material.critical_density for material in scene.materials)
+    return CriticalState(particles, scene.materials) if loosens else AsDenseAsRock()
+
+
+def _shear(scene: Scene, particles: Particles, packing: PackingLaw) -> ShearLaw:
     """Hencky's law with or without strength, or none."""
     if not scene.physics.shear:
         return Fluid()
-    strength = Strength(scene.materials) if scene.physics.strength else Unlimited()
-    return Hencky(particles, strength, scene.materials)
+    strength = Strength(scene.materials, packing) if scene.physics.strength else Unlimited()
+    return Hencky(particles, strength, packing, scene.materials)
 
 
 def _damage(scene: Scene, particles: Particles) -> DamageLaw:

@@ -30,6 +30,7 @@ FIELD_TYPES = {
     "viscous_heat": Real,
     "affine_loss": Real,
     "damage_root": Real,
+    "plastic_dilation": Real,
     "acceleration": vec3,
 }
 """Taichi's type of every quantity."""
@@ -64,6 +65,7 @@ class Particles:
         transfer_heat, plastic_heat, viscous_heat: specific energy that motion has lost since the start [J/kg].
         affine_loss: specific energy that the affine motion has lost in free motion since the start [J/kg].
         damage_root: cube root of the damage [-].
+        plastic_dilation: J_c - 1 [-], with the J_c = rho0/rho above which broken rock bears no pressure.
         acceleration: by self-gravity [m/s^2].
         index: number in the scene of the particle at each index of the device.
         order: the same on the host, shape [particle_count].

@@ -12,6 +12,7 @@ from engine.laws.dissipation import NoDissipation
 from engine.laws.energy import InternalEnergy
 from engine.laws.fracture import Unbreakable
 from engine.laws.interfaces import GrowthLaw, ViscosityLaw
+from engine.laws.packing import AsDenseAsRock, CriticalState
 from engine.laws.shear import Fluid, Hencky
 from engine.laws.strength import Strength, Unlimited
 from engine.laws.tillotson import Tillotson
@@ -60,12 +61,15 @@ class MaterialPoint:
     ) -> None:
         materials = [material]
         self.particles = Particles(count)
+        packing = CriticalState(self.particles, materials) if material.critical_density else AsDenseAsRock()
+        limit = Strength(materials, packing) if strength else Unlimited()
         self.constitution = Constitution(
             self.particles,
             Tillotson(materials),
             InternalEnergy(self.particles),
             NoDissipation(),
-            Hencky(self.particles, Strength(materials) if strength else Unlimited(), materials) if shear else Fluid(),
+            packing,
+            Hencky(self.particles, limit, packing, materials) if shear else Fluid(),
             Damage(self.particles, fracture or Unbreakable()),
             viscosity or Inviscid(),
         )

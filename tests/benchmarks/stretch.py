@@ -63,7 +63,7 @@ class StretchConstitution(Constitution):
         strain = logs - logs.sum() / 3.0
         root_J2 = 2.0 * G / J * ti.sqrt(0.5 * strain.norm_sqr())
         direction = U @ diagonal(strain) @ U.transpose()
-        share = return_factor(root_J2, self.shear.strength.limit(P, E, self.damage.value(p), direction, body))
+        share = return_factor(root_J2, self.shear.strength.limit(p, P, E, self.damage.value(p), direction, body))
         elastic = F
         if share < 1.0:
             elastic = U @ diagonal(ti.exp(logs - (1.0 - share) * strain)) @ V.transpose()

@@ -13,6 +13,7 @@ from engine.job.checkpoint import load_checkpoint, save_checkpoint
 from engine.job.directory import JobDirectory
 from engine.job.session import Options, run_job
 from engine.job.storage import read_dataset, write_dataset
+from engine.scene.material import named
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
 from tests.helpers.scenes import advance, body, scene, started
@@ -46,6 +47,20 @@ def test_clock_events_and_particles_are_restored(tmp_path: Path) -> None:
         for _ in range(6):
             each.advance(given.end_time, steps=10)
     assert first.time > 2.0 * 30.0 + given.start_time
+    assert_same_state(first, second)
+
+
+@pytest.mark.usefixtures("taichi")
+def test_rubble_that_loosens_resumes_to_the_same_bits(tmp_path: Path) -> None:
+    loosening = named("basalt", friction=0.945, critical_density=2000.0, dilatancy=0.2)
+    one = body(material=loosening, velocity=(0.0, 200.0, 0.0))
+    given = scene(one, {**one, "position": (90e3, 20e3, 0.0), "velocity": (-200.0, 0.0, 0.0)})
+    job, first, second = JobDirectory(tmp_path), advance(started(given), 60), Simulation(given)
+    assert first.particles.read("plastic_dilation")["plastic_dilation"].max() > 1e-4
+    save_checkpoint(job, first, {})
+    load_checkpoint(job, second)
+    for each in (first, second):
+        advance(each, 120)
     assert_same_state(first, second)
 
 

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from engine.laws.packing import AsDenseAsRock
 from engine.laws.strength import Strength, Unlimited, return_factor
 from engine.scene.material import named
 from tests.helpers.device import Array, evaluate, worst
@@ -13,11 +14,12 @@ SETS = list(FRICTION)
 
 
 def law(name: str) -> Strength:
-    return Strength([named("basalt"), named("basalt", friction=friction_of(name))])
+    return Strength([named("basalt"), named("basalt", friction=friction_of(name))], AsDenseAsRock())
 
 
 def engine_limit(name: str, P: Array, E: Array, D: Array) -> Array:
-    return evaluate(law(name).limit, P, E, D, np.zeros((len(P), 3, 3)), np.ones(len(P), dtype=np.int32))[0]
+    numbers = np.ones(len(P), dtype=np.int32)
+    return evaluate(law(name).limit, numbers, P, E, D, np.zeros((len(P), 3, 3)), numbers)[0]
 
 
 def states(count: int = 6000) -> tuple[Array, Array, Array]:
@@ -88,6 +90,7 @@ def test_the_return_factor_is_exactly_one_up_to_the_limit_and_their_ratio_beyond
 
 def test_an_unlimited_solid_keeps_all_strain():
     P, u, D = states(100)
-    (Y,) = evaluate(Unlimited().limit, P, u, D, np.zeros((100, 3, 3)), np.zeros(100, dtype=np.int32))
+    numbers = np.zeros(100, dtype=np.int32)
+    (Y,) = evaluate(Unlimited().limit, numbers, P, u, D, np.zeros((100, 3, 3)), numbers)
     (found,) = evaluate(return_factor, np.full(100, 1e20), Y)
     assert np.array_equal(found, np.ones(100))
