@@ -65,7 +65,7 @@ HISTORY = {
     "largest_speed": Quantity("highest speed of a particle", "m s-1"),
     "largest_compression": Quantity("highest rho/rho0 of a particle", "1"),
     "damaged_fraction": Quantity("mean damage of all particles", "1"),
-    "compressed_fraction": Quantity("fraction of the mass that is denser than at rest, and so bears pressure", "1"),
+    "compressed_fraction": Quantity("fraction of the mass that is denser than its packing, and so bears pressure", "1"),
     "isolated": Quantity("particles with no other in their block or in one beside it", "1"),
 }
 """Variables of history.nc."""
@@ -84,6 +84,7 @@ PARTICLES = {
     "rho": Quantity("density", "kg m-3"),
     "damage": Quantity("damage", "1"),
     "energy": Quantity("specific internal energy", "J kg-1"),
+    "packing": Quantity("J_c, the J above which broken rock bears no pressure", "1", "absent where it is 1 everywhere"),
     "body": Quantity("index of the body the particle came from", "1"),
 }
 """Variables of snapshots and of final.nc."""

@@ -220,7 +220,7 @@ def _interior(remnant: Particles) -> Numbers:
 
 def _motion(remnant: Particles, bound: Particles) -> Numbers:
     """What moves inside the largest remnant and the bound mass, and what of the latter bears pressure."""
-    compressed = bound.mass[bound.J < 1.0].sum() / bound.mass.sum()
+    compressed = bound.mass[bound.packing > bound.J].sum() / bound.mass.sum()
     return {"compressed_fraction": float(compressed)} | _flow(remnant, "flow") | _flow(bound, "bound_flow")
 
 

@@ -30,6 +30,7 @@ class Particles:
         J: det F = rho0/rho [-], shape [particle_count].
         rho: density [kg/m3], shape [particle_count].
         damage: [-], shape [particle_count].
+        packing: J_c, the J above which broken rock bears no pressure [-], shape [particle_count].
         body: index of the body in the scene, shape [particle_count].
         spacing: particle spacing h [m].
         time: simulated time after point-mass contact [s].
@@ -44,6 +45,7 @@ class Particles:
     J: Array
     rho: Array
     damage: Array
+    packing: Array
     body: Integers
     spacing: float
     time: float
@@ -53,7 +55,7 @@ class Particles:
 
     def select(self, chosen: NDArray[np.bool_]) -> "Particles":
         """The particles where `chosen`, shape [particle_count], holds."""
-        return replace(self, **{name: getattr(self, name)[chosen] for name in (*MEASURED, "body")})
+        return replace(self, **{name: getattr(self, name)[chosen] for name in (*MEASURED, "packing", "body")})
 
 
 def read_particles(path: Path) -> Particles:
@@ -78,6 +80,7 @@ def _particles(dataset: xr.Dataset) -> Particles:
         raise ValueError("it holds no particle")
     return Particles(
         **{name: _values(dataset, name) for name in MEASURED},
+        packing=_values(dataset, "packing") if "packing" in dataset else np.ones(dataset.sizes["particle"]),
         body=_values(dataset, "body").astype(np.int64),
         spacing=float(dataset.attrs["spacing"]),
         time=float(dataset.attrs["time"]),

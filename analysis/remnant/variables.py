@@ -155,7 +155,9 @@ OUTCOMES = {
     "J_p95": Quantity("95th percentile of rho0/rho over the particles of the largest remnant", "1"),
     "damaged_fraction": Quantity(f"mass fraction of the largest remnant with damage above {DAMAGED:g}", "1"),
     "compressed_fraction": Quantity(
-        "mass fraction of the bound mass under pressure", "1", "J = rho0/rho below 1; the rest bears none, or tension"
+        "mass fraction of the bound mass under pressure",
+        "1",
+        "J = rho0/rho below 1, or below that of its packing; the rest bears none, or tension",
     ),
     **_flow("flow", "the largest remnant"),
     **_flow("bound_flow", "the bound mass"),

@@ -215,7 +215,7 @@ class Session:
             largest_speed=float(np.linalg.norm(state["v"], axis=1).max()),
             largest_compression=float(1.0 / (1.0 + state["j"].min())),
             damaged_fraction=float(np.mean(state["damage_root"] ** 3)),
-            compressed_fraction=float(np.average(state["j"] < 0.0, weights=state["mass"])),
+            compressed_fraction=float(np.average(state["j"] < state["plastic_dilation"], weights=state["mass"])),
             isolated=float(simulation.stencil.ballistic_count[None]),
         )
 

@@ -9,12 +9,12 @@ from engine.job.storage import Attributes
 from engine.quantities import PARTICLES, SPACE
 from engine.state.particles import Arrays
 
-FIELDS = ("x", "v", "mass", "j", "E", "damage_root", "body")
+FIELDS = ("x", "v", "mass", "j", "E", "damage_root", "plastic_dilation", "body")
 """Fields of the particles that a snapshot is computed from."""
 
 
 def snapshot(state: Arrays, rho0: Scalars, attributes: Attributes, dtype: DTypeLike = np.float64) -> xr.Dataset:
-    """Return the variables of engine/quantities.PARTICLES, dimensions `particle` and `space`.
+    """Return the variables of engine/quantities.PARTICLES, dimensions `particle` and `space`; no packing of rock alone.
 
     Args:
         state: the fields `FIELDS` of every particle.
@@ -32,6 +32,8 @@ def snapshot(state: Arrays, rho0: Scalars, attributes: Attributes, dtype: DTypeL
         "damage": state["damage_root"] ** 3,
         "energy": state["E"],
     }
+    if state["plastic_dilation"].any():
+        values["packing"] = 1.0 + state["plastic_dilation"]
     variables = {name: _variable(name, value.astype(dtype)) for name, value in values.items()}
     variables["body"] = _variable("body", state["body"])
     return xr.Dataset(variables, {"space": list(SPACE)}, {"Conventions": "CF-1.11", **attributes})

@@ -87,6 +87,16 @@ def test_density_is_that_of_the_particles_and_pressure_that_of_the_bound_mass(tm
     np.testing.assert_allclose(cell["compressed_fraction"], (J[:-1] < 1.0).mean())
 
 
+def test_loose_rubble_is_under_pressure_below_its_packing(tmp_path: Path) -> None:
+    final = remnant()
+    loose = np.arange(len(POINTS) + 1) % 4 == 0
+    final["J"] = ("particle", np.full(len(POINTS) + 1, 1.2))
+    final["packing"] = ("particle", np.where(loose, 1.3, 1.1))
+    one_job(tmp_path, final=final)
+    cell = collect(tmp_path).isel(velocity=0, angle=0)
+    np.testing.assert_allclose(cell["compressed_fraction"], loose[:-1].mean())
+
+
 def test_flow_and_pressure_of_the_bound_mass_are_not_those_of_the_remnant(tmp_path: Path) -> None:
     position = np.concatenate([POINTS, [[5e5, 0.0, 0.0]]])
     velocity = np.concatenate([np.cross(OMEGA, POINTS), [[0.0, 1.0, 0.0]]])

@@ -18,6 +18,7 @@ def state() -> Arrays:
         "j": np.array([0.0, -0.5, 1.0]),
         "E": np.array([0.0, 5.0, 1e-3]),
         "damage_root": np.array([0.0, 0.5, 1.0]),
+        "plastic_dilation": np.array([0.0, 0.0, 0.25]),
         "body": np.array([0, 0, 1], dtype=np.int32),
     }
 
@@ -27,7 +28,12 @@ def test_density_and_damage_follow_from_volume_and_cube_root() -> None:
     assert np.array_equal(dataset["J"], [1.0, 0.5, 2.0])
     assert np.array_equal(dataset["rho"], [2700.0, 5400.0, 450.0])
     assert np.array_equal(dataset["damage"], [0.0, 0.125, 1.0])
+    assert np.array_equal(dataset["packing"], [1.0, 1.0, 1.25])
     assert dataset.attrs["time"] == 7.0
+
+
+def test_rock_as_dense_as_it_was_has_no_packing() -> None:
+    assert "packing" not in snapshot({**state(), "plastic_dilation": np.zeros(3)}, RHO0, {})
 
 
 def test_every_variable_has_its_unit_and_vectors_their_space() -> None:
