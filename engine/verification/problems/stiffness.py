@@ -10,7 +10,7 @@ from engine.verification.harness import Array, Harness, State
 from engine.verification.problems.cliff import THIN, Cliff
 
 SCATTER = 0.05
-"""RMS of H [L0] between cliffs at rest, 10 cells, whose particles are displaced by 0.1 dx at random: 0.034 to 0.048."""
+"""RMS of H [L0] between cliffs at rest, 10 cells, whose particles are displaced by 0.1 dx at random: 0.039 to 0.050."""
 
 
 @dataclass(frozen=True)
@@ -29,23 +29,23 @@ class Stiffness:
     cells: int = 10
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Compare profiles within the scatter of disturbed particles; show the fronts."""
+        """Compare profiles at the same rate within the scatter of disturbed particles; show those at another, and fronts."""
         soft = Cliff(self.cells)
         stiff = replace(soft, stiffness=2.0 * soft.stiffness)
         same_rate = replace(stiff, filter_time=2.0 * stiff.filter_time)
         before = soft.run(harness)
         return [
-            *_changes("same filter_time", soft, before, stiff.run(harness)),
-            *_changes("same rate", soft, before, same_rate.run(harness)),
+            *_changes("same filter_time", soft, before, stiff.run(harness), inf),
+            *_changes("same rate", soft, before, same_rate.run(harness), SCATTER),
         ]
 
 
-def _changes(what: str, cliff: Cliff, before: dict[str, State], after: dict[str, State]) -> list[Check]:
+def _changes(what: str, cliff: Cliff, before: dict[str, State], after: dict[str, State], allowed: float) -> list[Check]:
     checks = []
     for when in before:
         change = rms_difference(cliff.profile(before[when])[1], cliff.profile(after[when])[1])
         fronts = cliff.front(after[when]), cliff.front(before[when])
-        checks.append(Check.absolute(f"{when}, {what}: RMS change of H", "L0", change, 0.0, SCATTER))
+        checks.append(Check.absolute(f"{when}, {what}: RMS change of H", "L0", change, 0.0, allowed))
         checks.append(Check.absolute(f"{when}, {what}: front", "L0", *fronts, inf))
     return checks
 
