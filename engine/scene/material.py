@@ -3,7 +3,14 @@
 from collections.abc import Iterable
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import (
+    Discriminator,
+    Field,
+    SerializerFunctionWrapHandler,
+    Tag,
+    model_serializer,
+    model_validator,
+)
 
 from engine.scene.fields import Frozen, NonNegative, Number, Positive, key
 from engine.scene.input_errors import did_you_mean
@@ -32,6 +39,10 @@ NEEDED = {
     "fracture": ("weibull_k", "weibull_m"),
 }
 """Constants without which a part of physics cannot be, by the part's key."""
+
+
+PACKING = ("critical_density", "dilatancy", "crushing_pressure")
+"""Keys that a material does not write where they are not set: scenes from before they existed keep their hash."""
 
 
 class Material(Frozen):
@@ -70,6 +81,11 @@ class Material(Frozen):
     weibull_m: Annotated[
         Annotated[Number, Field(ge=1.0, allow_inf_nan=False)] | None, key("Weibull exponent m of flaws", "1")
     ] = None
+
+    @model_serializer(mode="wrap")
+    def _without_unset_packing(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        table: dict[str, Any] = serialize(self)
+        return {name: value for name, value in table.items() if name not in PACKING or value is not None}
 
     @model_validator(mode="before")
     @classmethod

@@ -29,7 +29,7 @@ class Stiffness:
     cells: int = 10
 
     def checks(self, harness: Harness) -> list[Check]:
-        """Compare profiles at the same rate within the scatter of disturbed particles; show those at another, and fronts."""
+        """Compare profiles at one rate within the scatter of disturbed particles; show those at another, and fronts."""
         soft = Cliff(self.cells)
         stiff = replace(soft, stiffness=2.0 * soft.stiffness)
         same_rate = replace(stiff, filter_time=2.0 * stiff.filter_time)

@@ -99,3 +99,14 @@ def test_a_constant_that_is_unknown_is_never_a_number():
     assert named("basalt").known("friction") == 0.839
     with pytest.raises(ValueError, match="material ice has no 'cohesion'"):
         named("ice").known("cohesion")
+
+
+PACKING = {"critical_density": 2000.0, "dilatancy": 0.1, "crushing_pressure": 1e7}
+
+
+def test_rock_that_does_not_loosen_writes_no_packing_so_that_older_scenes_keep_their_hash():
+    plain, loosening = named("basalt", friction=0.9), named("basalt", friction=0.9, **PACKING)
+    assert not PACKING.keys() & plain.model_dump().keys() and PACKING.keys() <= loosening.model_dump().keys()
+    assert plain.hash() != loosening.hash()
+    for material in (plain, loosening):
+        assert Material.model_validate(material.model_dump(mode="json")) == material
