@@ -60,6 +60,6 @@ def _panel(axes: Axes, group: pd.DataFrame, quantity: str, names: list[Name], lo
             color=colour,
             markerfacecolor=colour if own else "white",
             linestyle="none",
-            label=", ".join(name),
+            label=", ".join(part for part in name if part),
         )
     axes.set(ylim=(-len(names), 1), yticks=[])

@@ -10,7 +10,6 @@ from analysis.comparison.scaling import largest_remnant
 from analysis.results.statistics import count, spread
 from analysis.results.variables import NONE
 from engine.errors import SceneError
-from engine.job.directory import JobState
 
 REFERENCES = Path(__file__).with_name("references.csv")
 """What other methods find; empty where a source gives no number."""
@@ -20,6 +19,9 @@ COLLISION = ["velocity", "angle"]
 
 MEASURED = ["mass_ratio", "second_mass_ratio", "bound_mass_ratio", "b_over_a", "c_over_a"]
 """Columns that are compared."""
+
+RADIUS = 50e3
+"""Of both bodies in all references [m]."""
 
 OWN = "this study"
 """Method of the rows of the campaign."""
@@ -41,8 +43,8 @@ def compared(results: xr.Dataset) -> pd.DataFrame:
     """
     own = own_rows(results)
     collisions = own[COLLISION].drop_duplicates()
-    scaled = scaling_rows(results, collisions)
-    rows = pd.concat([own, references().assign(runs=1.0), scaled], ignore_index=True)
+    others = references().assign(runs=1.0) if _radii(results) == (RADIUS, RADIUS) else references().iloc[:0]
+    rows = pd.concat([own, others, scaling_rows(results, collisions)], ignore_index=True)
     order = {tuple(pair): i for i, pair in enumerate(collisions.to_numpy())}
     place = [order.get(pair, -1) for pair in zip(rows["velocity"], rows["angle"], strict=True)]
     return rows.assign(place=place).query("place >= 0").sort_values("place", kind="stable").drop(columns="place")
@@ -50,10 +52,13 @@ def compared(results: xr.Dataset) -> pd.DataFrame:
 
 def own_rows(results: xr.Dataset) -> pd.DataFrame:
     """Return means over seeds, and their standard deviations `<name>_spread`, of every case that has a finished run."""
-    if not {"case", "seed"} <= set(results.dims):
-        raise SceneError("the campaign needs [[cases]] and the axis seed, as the study comparison has them")
-    done = results["state"] == JobState.DONE
-    if not done.any():
+    allowed = {"case", "seed"} <= set(results.dims) and not set(COLLISION) & set(results.dims)
+    if not allowed:
+        raise SceneError(
+            "the campaign needs [[cases]] that give velocity and angle, the axis seed and no [error_bars], as the "
+            f"study comparison has them; its dimensions are {', '.join(map(str, results.dims))}"
+        )
+    if not results["mass_ratio"].notnull().any():
         raise SceneError("no run of the campaign is done yet; run it first")
     table = xr.Dataset({"runs": count(results["mass_ratio"])})
     for name in MEASURED:
@@ -64,20 +69,28 @@ def own_rows(results: xr.Dataset) -> pd.DataFrame:
     rows = table.to_dataframe().reset_index().query("runs > 0")
     others = [str(name) for name in results.dims if name not in ("case", "seed")]
     material = rows[others].astype(str).agg(", ".join, axis=1) if others else ""
-    return rows.assign(method=OWN, material=material, particles=_particles(results)).drop(columns=["case", *others])
+    several = rows.groupby([*COLLISION, *others])["case"].transform("nunique") > 1
+    named = rows["case"].where(several, "").str.cat(pd.Series(material, index=rows.index), sep=", ").str.strip(", ")
+    return rows.assign(method=OWN, material=named, particles=_particles(results)).drop(columns=["case", *others])
 
 
 def scaling_rows(results: xr.Dataset, collisions: pd.DataFrame) -> pd.DataFrame:
-    """Return what scaling without friction says of the bound mass, if all collisions have one pair of bodies."""
-    attributes = results.attrs
-    radius, other = (str(attributes.get(f"{body}.radius", NONE)) for body in ("target", "projectile"))
-    if radius == NONE:
+    """Return what scaling without friction says of the bound mass, if all runs have the same radii and one material."""
+    radii = _radii(results)
+    densities = [value for key, value in results.attrs.items() if str(key).endswith(".rho0")]
+    if radii is None or len(densities) != 1:
         return collisions.iloc[:0]
-    radii = float(radius), float(radius if other == NONE else other)
-    density = float(next(value for key, value in attributes.items() if str(key).endswith(".rho0")))
-    target, projectile = (4.0 / 3.0 * np.pi * density * r**3 for r in radii)
+    target, projectile = (4.0 / 3.0 * np.pi * float(densities[0]) * r**3 for r in radii)
     bound = [largest_remnant((target, projectile), radii, *pair) for pair in collisions.to_numpy()]
     return collisions.assign(method="scaling", material="no friction", bound_mass_ratio=bound)
+
+
+def _radii(results: xr.Dataset) -> tuple[float, float] | None:
+    """Radii of target and projectile [m], if all runs have the same."""
+    target, projectile = (results.attrs.get(f"{body}.radius") for body in ("target", "projectile"))
+    if target in (None, NONE) or projectile is None:
+        return None
+    return float(target), float(target if projectile == NONE else projectile)
 
 
 def _particles(results: xr.Dataset) -> float:

@@ -85,6 +85,7 @@ class Constitution:
         P, c2 = self.eos.evaluate(p, (dilation - j) / J, E, body)
         if P < 0.0:
             P *= 1.0 - D
+        c2 *= (1.0 + dilation) ** 2
         s = self.shear.stress(p, H, growth, J, P, E, D, body)
         stress, diffusivity = self.viscosity.stress(p, symmetric(L), rho0 / J, ti.sqrt(c2))
         tau = s + J * (stress - P * identity())
@@ -133,8 +134,15 @@ class Constitution:
     def signal_speed(self, p):
         """Return the signal speed [m/s] in the present state of particle p."""
         body, j = self.particles.body[p], self.particles.j[p]
-        _, c2 = self.eos.evaluate(p, (self.packing.dilation(p) - j) / (1.0 + j), self.energy.after(p, 0.0), body)
-        return self.signal_speed_of(c2, body)
+        dilation = self.packing.dilation(p)
+        _, c2 = self.eos.evaluate(p, (dilation - j) / (1.0 + j), self.energy.after(p, 0.0), body)
+        return self.signal_speed_of(c2 * (1.0 + dilation) ** 2, body)
+
+    @ti.func
+    def expansion(self, p):
+        """Return J/J_c - 1 [-] of particle p: above zero broken rock bears no pressure."""
+        dilation = self.packing.dilation(p)
+        return (self.particles.j[p] - dilation) / (1.0 + dilation)
 
     @ti.func
     def signal_speed_of(self, c2, body):

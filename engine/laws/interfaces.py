@@ -145,7 +145,7 @@ class PackingLaw(Protocol):
             body: index of the body.
         """
 
-    def shear(self, p, shear, J, P, D, body):
+    def shear(self, p, shear, J, P, Y, D, body):
         """Change the packing of particle p; called after its strength has limited the stress.
 
         Args:
@@ -153,6 +153,7 @@ class PackingLaw(Protocol):
             shear: plastic shear sqrt(2 e:e) of the step, of the plastic strain e [-].
             J: rho0/rho after the step [-].
             P: pressure [Pa].
+            Y: largest sqrt(J2) [Pa].
             D: damage [-].
             body: index of the body.
         """

@@ -28,7 +28,9 @@ class CriticalState:
             dilatancy=dilatancy,
             rate=[angle / loose if loose else 0.0 for angle, loose in zip(dilatancy, looseness, strict=True)],
             # of pressure, which makes the critical packing denser
-            crushing=[1.0 / (material.crushing_pressure or float("inf")) for material in materials],
+            crushing=[
+                1.0 / material.crushing_pressure if material.crushing_pressure else 0.0 for material in materials
+            ],
         )
 
     @ti.func
@@ -43,9 +45,14 @@ class CriticalState:
         return mu - m.dilatancy + m.rate * (self.critical(P, body) - self.plastic_dilation[p])
 
     @ti.func
-    def shear(self, p, shear, J, P, D, body):
-        """Move the packing of particle p towards the critical one by a plastic shear [-]."""
-        dilation, critical = self.plastic_dilation[p], self.critical(P, body)
+    def shear(self, p, shear, J, P, Y, D, body):
+        """Move the packing of particle p towards the critical one by a plastic shear [-].
+
+        Where other things than friction limit the stress, dilatancy takes no more than the work of shear.
+        """
+        dilation, critical, work = self.plastic_dilation[p], self.critical(P, body), self.table[body].dilatancy * P
+        if work > Y:
+            shear *= Y / work
         dilation = critical + (dilation - critical) * ti.exp(-self.table[body].rate * D * shear)
         if D == 1.0 and self.table[body].looseness < J - 1.0:
             dilation = self.table[body].looseness
@@ -73,5 +80,5 @@ class AsDenseAsRock:
         return mu
 
     @ti.func
-    def shear(self, p, shear, J, P, D, body):
+    def shear(self, p, shear, J, P, Y, D, body):
         """Do nothing."""

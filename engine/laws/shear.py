@@ -78,7 +78,8 @@ class Hencky:
 
         Where Y = 0 the stored strain is zero.
         """
-        G, strain, remaining, shear = self.modulus(body), mat3(0.0), vec6(0.0), ti.cast(0.0, Real)
+        G, strain, remaining = self.modulus(body), mat3(0.0), vec6(0.0)
+        Y, shear = ti.cast(0.0, Real), ti.cast(0.0, Real)
         if self.strength.bears_shear(P, D):
             remaining = deform(self.b_minus_I[p], H, growth)
             strain = deviator(half_log(unpack(remaining)))
@@ -89,7 +90,7 @@ class Hencky:
                 strain *= factor
                 remaining = pack(exp_minus_identity(2.0 * strain))
         self.b_minus_I[p] = remaining
-        self.packing.shear(p, shear, J, P, D, body)
+        self.packing.shear(p, shear, J, P, Y, D, body)
         return 2.0 * G * strain
 
     @ti.func

@@ -19,7 +19,7 @@ def affine_velocity(C, dt, j, steepest):
     Args:
         C: affine velocity [1/s].
         dt: time of the motion [s].
-        j: det F - 1 before the motion [-].
+        j: J - 1 before the motion [-], with J relative to the volume above which matter bears no pressure.
         steepest: gradient that the grid can have and the motion of the bodies can make [1/s].
     """
     S, after, J = symmetric(C), symmetric(moved(C, dt)), 1.0 + j

@@ -45,7 +45,7 @@ class Apic:
         dt = self.clock.dt[None]
         self.particles.v[p] = v
         self.response.move(p, dt)
-        self.particles.C[p] = affine_velocity(L, dt, self.particles.j[p], 1.0 / dt)
+        self.particles.C[p] = affine_velocity(L, dt, self.response.constitution.expansion(p), 1.0 / dt)
         return self.response.deform(p, L, dx)
 
     @ti.func

@@ -239,7 +239,7 @@ class Drift:
         half = 0.5 * self.clock.dt[None]
         for p in range(self.particles.count * self.clock.running[None]):
             C = self.particles.C[p]
-            after = affine_velocity(C, half, self.particles.j[p], self.scheme.steepest[None])
+            after = affine_velocity(C, half, self.scheme.response.constitution.expansion(p), self.scheme.steepest[None])
             self.particles.C[p] = after
             self.scheme.lose_affine(p, C, after)
             self.scheme.response.move(p, half)

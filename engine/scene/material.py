@@ -75,7 +75,7 @@ class Material(Frozen):
         Positive | None, key("largest plastic dilation by plastic shear; `friction` falls by it towards rho_c", "1")
     ] = None
     crushing_pressure: Annotated[
-        Positive | None, key("pressure at which shear leaves half of the pores of rho_c; without it, all", "Pa")
+        Positive | None, key("pressure at which shear leaves half of the pores of rho_c", "Pa")
     ] = None
     weibull_k: Annotated[Positive | None, key("Weibull coefficient k: flaws per volume, k strain^m", "m-3")] = None
     weibull_m: Annotated[
@@ -120,12 +120,14 @@ class Material(Frozen):
 
     @model_validator(mode="after")
     def _loosens_and_dilates(self) -> Self:
-        if (self.critical_density is None) != (self.dilatancy is None):
-            raise ValueError("'critical_density' and 'dilatancy' belong together: give both or none")
-        if self.crushing_pressure is not None and self.dilatancy is None:
-            raise ValueError("'crushing_pressure' needs 'critical_density' and 'dilatancy'")
-        if self.critical_density is not None and self.critical_density >= self.rho0:
-            raise ValueError(f"'critical_density' {self.critical_density} kg/m3 must be below 'rho0' {self.rho0} kg/m3")
+        absent = [name for name in PACKING if getattr(self, name) is None]
+        if 0 < len(absent) < len(PACKING):
+            raise ValueError(f"'{', '.join(PACKING)}' belong together: give all or none (absent: {', '.join(absent)})")
+        if self.critical_density is not None and not 0.5 * self.rho0 <= self.critical_density < self.rho0:
+            raise ValueError(
+                f"'critical_density' {self.critical_density} kg/m3 must be below 'rho0' {self.rho0} kg/m3, "
+                "and at least half of it"
+            )
         if self.dilatancy is not None and (self.friction is None or self.dilatancy > 0.5 * self.friction):
             raise ValueError(
                 f"'dilatancy' {self.dilatancy} must be at most half of 'friction', {self.friction}: rubble looser than "

@@ -231,7 +231,12 @@ class Scene(Frozen):
 
     @property
     def separates_bodies(self) -> bool:
-        """Whether bodies have motion of their own at nodes: there are several, all large enough to fill one."""
+        """Whether bodies have motion of their own at nodes: there are several, all large enough to fill one.
+
+        Mass does not tell what rubble that loosens fills of a node.
+        """
+        if any(material.critical_density for material in self.materials):
+            return False
         smallest = min(body.volume for body in self.bodies) / self.dx**3
         return self.physics.contact is not None and len(self.bodies) > 1 and smallest >= SPHERE_OF_A_NODE
 

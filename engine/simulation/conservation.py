@@ -103,17 +103,17 @@ def half_step_work(state: Arrays, dt: float) -> float:
 
 
 def elastic_energy(state: Arrays, rho0: Scalars, bulk: Scalars, shear: Scalars) -> Scalars:
-    """Return the elastic energy of every particle [J], V (P^2/2K + s:s/4G) for small strains, shape [particle_count].
+    """Return the elastic energy [J], V (P^2/(2K J_c) + s:s/4G) for small strains, shape [particle_count].
 
     Args:
-        state: fields j, tau and mass of every particle.
+        state: fields j, tau, mass and plastic_dilation of every particle.
         rho0, bulk, shear: reference density [kg/m^3] and moduli [Pa] of every particle, shape [particle_count].
     """
     s = state["tau"].copy()
     pressure = -np.sum(s[:, :3], axis=1) / 3.0
     s[:, :3] += pressure[:, None]
     square = np.sum(s[:, :3] ** 2, axis=1) + 2.0 * np.sum(s[:, 3:] ** 2, axis=1)
-    density = pressure**2 / (2.0 * bulk) + square / (4.0 * shear)
+    density = pressure**2 / (2.0 * bulk * (1.0 + state["plastic_dilation"])) + square / (4.0 * shear)
     return np.asarray(state["mass"] / rho0 * density)
 
 

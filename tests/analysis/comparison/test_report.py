@@ -52,8 +52,26 @@ def test_rows_of_a_campaign_are_means_over_seeds_beside_others_of_the_same_colli
     np.testing.assert_allclose(bound, [1.24, 2.0], atol=0.005)
 
 
-def test_bodies_of_unknown_size_have_no_scaling() -> None:
-    assert "scaling" not in set(compared(results(**{"target.radius": "none"}))["method"])
+@pytest.mark.parametrize(
+    ("attributes", "methods"),
+    [
+        ({"target.radius": 5e2}, {OWN, "scaling"}),
+        ({"projectile.radius": 3e4}, {OWN, "scaling"}),
+        ({"target.radius": "none"}, {OWN}),
+        ({"materials.ice.rho0": 917.0}, {OWN, "scaling", *references()["method"]} - {"scaling"}),
+    ],
+)
+def test_other_bodies_have_no_references_and_several_materials_no_scaling(
+    attributes: dict[str, object], methods: set[str]
+) -> None:
+    assert set(compared(results(**attributes))["method"]) == methods
+
+
+def test_cases_of_one_collision_are_told_apart_by_their_names() -> None:
+    both = results()
+    both = both.assign_coords(velocity=0.0 * both["velocity"] + 200.0, angle=0.0 * both["angle"] + 5.0)
+    own = compared(both)
+    assert own[own["method"] == OWN]["material"].tolist() == ["fast, one", "fast, other", "slow, one", "slow, other"]
 
 
 def test_references_are_complete_and_possible() -> None:
@@ -82,7 +100,7 @@ def test_a_campaign_of_other_dimensions_is_refused(changed: dict[str, tuple[str,
 
 def test_a_campaign_without_a_finished_run_is_refused() -> None:
     empty = results()
-    empty["state"] = xr.full_like(empty["state"], "pending")
+    empty["mass_ratio"] = xr.full_like(empty["mass_ratio"], np.nan)
     with pytest.raises(SceneError, match="no run"):
         compared(empty)
 

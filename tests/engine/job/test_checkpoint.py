@@ -52,7 +52,7 @@ def test_clock_events_and_particles_are_restored(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("taichi")
 def test_rubble_that_loosens_resumes_to_the_same_bits(tmp_path: Path) -> None:
-    loosening = named("basalt", friction=0.945, critical_density=2000.0, dilatancy=0.2)
+    loosening = named("basalt", friction=0.945, critical_density=2000.0, dilatancy=0.2, crushing_pressure=1e7)
     one = body(material=loosening, velocity=(0.0, 200.0, 0.0))
     given = scene(one, {**one, "position": (90e3, 20e3, 0.0), "velocity": (-200.0, 0.0, 0.0)})
     job, first, second = JobDirectory(tmp_path), advance(started(given), 60), Simulation(given)

@@ -56,6 +56,7 @@ def test_elastic_energy_is_that_of_small_strains() -> None:
     state = {
         "mass": np.full(2, 6.0),
         "j": np.zeros(2),
+        "plastic_dilation": np.zeros(2),
         "tau": np.array([[-3.0, -3.0, -3.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 5.0, 0.0]]),
     }
     found = elastic_energy(state, rho0=np.full(2, 3.0), bulk=np.full(2, 10.0), shear=np.full(2, 4.0))
