@@ -24,8 +24,8 @@ class Fallback:
     As in the collapse of a sphere without pressure, r/R = s cos^2 b at (b + sin(2b)/2) (s^3 R^3/(2 G M))^(1/2) before
     and after it turns at s R. Rubble that is back falls together at its speed of departure, which friction takes away.
 
-    Its surface bounces and comes to rest loose in layers that cells do not resolve, so the sum of m/rho errs by first
-    order in the particle spacing. The energy is conserved if the ledger has what the transfer dissipates; without it
+    Its surface bounces and comes to rest loose in layers that cells do not resolve, so the sum of m/rho errs by
+    about first order in the particle spacing. The energy is conserved if the ledger has what the transfer dissipates; without it
     94 % of the kinetic energy vanishes.
 
     Attributes:

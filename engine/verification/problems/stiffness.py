@@ -12,6 +12,9 @@ from engine.verification.problems.cliff import THIN, Cliff
 SCATTER = 0.05
 """RMS of H [L0] between cliffs at rest, 10 cells, whose particles are displaced by 0.1 dx at random: 0.039 to 0.050."""
 
+OTHER_RATE = 0.1
+"""The same at another rate of the filter, which is another damping: what the cliff may be off Jutzi's."""
+
 
 @dataclass(frozen=True)
 class Stiffness:
@@ -35,7 +38,7 @@ class Stiffness:
         same_rate = replace(stiff, filter_time=2.0 * stiff.filter_time)
         before = soft.run(harness)
         return [
-            *_changes("same filter_time", soft, before, stiff.run(harness), inf),
+            *_changes("same filter_time", soft, before, stiff.run(harness), OTHER_RATE),
             *_changes("same rate", soft, before, same_rate.run(harness), SCATTER),
         ]
 
