@@ -25,8 +25,8 @@ class Fallback:
     and after it turns at s R. Rubble that is back falls together at its speed of departure, which friction takes away.
 
     Its surface bounces and comes to rest loose in layers that cells do not resolve, so the sum of m/rho errs by
-    about first order in the particle spacing. The energy is conserved if the ledger has what the transfer dissipates; without it
-    94 % of the kinetic energy vanishes.
+    about first order in the particle spacing. The energy is conserved if the ledger has what the transfer dissipates;
+    without it 94 % of the kinetic energy vanishes.
 
     Attributes:
         particles: numbers of particles, from few to many.
