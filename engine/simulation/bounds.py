@@ -86,15 +86,17 @@ def largest_energy_change(scene: Scene) -> float:
     """Return the largest change of the total energy in the measure of `energy_growth` [-].
 
     It is of second order in the size of cells, (dx/R)^2/15 of a sphere with as many particles as the smallest body. As
-    it is not behind shocks, it is at least 1e-3 (1 + v_m/c_l), or 2e-2 if that is less.
+    it is not behind shocks, it is at least 1e-3 (1 + v_m/c_l), or 2e-2 if that is less. All energy of a body of one
+    particle may be in its breathing at 2c/dx, whose energy a leapfrog step of cfl dx/c changes by cfl^2.
 
     Args:
         scene: what is simulated.
     """
     fewest = min(body.count for body in scene.bodies)
     cell = (4.0 / 3.0 * math.pi * scene.numerics.particles_per_cell / fewest) ** (1.0 / 3.0)
+    breathing = scene.numerics.cfl**2 if fewest == 1 else 0.0
     mach = speed_of_motion(scene) / min(material.longitudinal_speed for material in scene.materials)
-    return float(max(cell**2 / 15.0, min(LEAST_ENERGY_CHANGE * (1.0 + mach), SHOCK_ENERGY_CHANGE)))
+    return float(max(cell**2 / 15.0, breathing, min(LEAST_ENERGY_CHANGE * (1.0 + mach), SHOCK_ENERGY_CHANGE)))
 
 
 def energy_growth(scene: Scene, row: Row, start: Row) -> float:

@@ -75,7 +75,8 @@ class Guard:
         time = float(row["time"])
         require_finite(state, time)
         _require_at_most("speed [m/s]", np.linalg.norm(state["v"], axis=1), self.speed, time)
-        _require_at_most("rho/rho0", 1.0 / (1.0 + state["j"]), self.compression, time)
+        dilation = state["plastic_dilation"]
+        _require_at_most("rho/rho0", (1.0 + dilation) / (1.0 + state["j"]), self.compression, time)
         _require_finite_row(row, time)
         self._check_mass(row, time)
         self._check_momentum(row, time)
