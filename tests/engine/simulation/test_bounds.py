@@ -46,7 +46,7 @@ def test_a_scene_at_rest_measures_its_growth_in_the_round_off_of_sound() -> None
 
 
 def test_energy_may_change_by_the_square_of_the_size_of_cells() -> None:
-    """(dx/R)^2/15 of the smallest body, from 1e-3, where bodies are well resolved, and cfl^2 where one is a particle."""
+    """(dx/R)^2/15 of the smallest body, 1e-3 where bodies are well resolved, and cfl^2 where one is a particle."""
     big, small = body(radius=50e3, particles=4000), body(radius=5e3, particles=500, position=(1e5, 0.0, 0.0))
     given = scene(big, small)
     assert largest_energy_change(given) == pytest.approx((given.dx / 50e3) ** 2 * 4.0 / 15.0, rel=1e-12)
