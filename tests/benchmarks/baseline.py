@@ -33,7 +33,7 @@ def _dense(simulation: Simulation, kind: type[Constitution]) -> DenseTransfer:
     scene, particles = simulation.scene, Particles(simulation.particles.count)
     own, gravity = assembly.constitution(scene, particles), assembly.gravity(scene, particles)
     particles.write(simulation.particles.read())
-    parts = (own.eos, own.energy, own.dissipation, own.shear, own.damage, own.viscosity)
+    parts = (own.eos, own.energy, own.dissipation, own.packing, own.shear, own.damage, own.viscosity)
     return DenseTransfer(particles, kind(particles, *parts), gravity, scene.dx)
 
 
