@@ -43,7 +43,10 @@ def state_of(given: Scene) -> Arrays:
         "j": np.zeros(count),
         "E": np.zeros(count),
         "mass": np.full(count, 3.0),
-        **{name: np.zeros(count) for name in ("transfer_heat", "plastic_heat", "viscous_heat", "affine_loss")},
+        **{
+            name: np.zeros(count)
+            for name in ("plastic_dilation", "transfer_heat", "plastic_heat", "viscous_heat", "affine_loss")
+        },
     }
 
 
