@@ -13,9 +13,9 @@ VENV := .venv
 RUN := $(VENV)/bin/python -m
 INSTALLED := $(VENV)/installed
 RESOURCES = $(if $(WORKERS),--workers $(WORKERS)) $(if $(THREADS),--threads-per-job $(THREADS)) $(OPTIONS)
-# what is done is plotted, also when a job failed; the exit code is the campaign's, or else tells of damaged results
-THEN_PLOT = ; code=$$?; [ $$code -gt 1 ] || $(MAKE) --no-print-directory plots; drawn=$$?; \
-	[ $$code -ne 0 ] || code=$$drawn; exit $$code
+# what is done is drawn, also when a job failed; the exit code is the campaign's, or else tells of damaged results
+THEN = ; code=$$?; [ $$code -gt 1 ] || $(1); drawn=$$?; [ $$code -ne 0 ] || code=$$drawn; exit $$code
+THEN_PLOT = $(call THEN,$(MAKE) --no-print-directory plots)
 
 .DEFAULT_GOAL := help
 .PHONY: help install campaign resume plan status plots accuracy comparison stability test test-slow bench bench-gravity lint clean
@@ -49,14 +49,11 @@ plots: $(INSTALLED) ## print the table of shapes of STUDY and draw its figures
 
 accuracy: $(INSTALLED) ## vary every numerical setting of scenes and of a collision: error against computing time
 	@$(RUN) engine accuracy '$(RUNS)/verification' $(if $(WORKERS),--workers $(WORKERS))
-	@$(RUN) campaigns run accuracy --runs '$(RUNS)' $(RESOURCES) ; code=$$?; \
-		[ $$code -gt 1 ] || $(RUN) analysis accuracy '$(RUNS)/accuracy'; drawn=$$?; \
-		[ $$code -ne 0 ] || code=$$drawn; exit $$code
+	@$(RUN) campaigns run accuracy --runs '$(RUNS)' $(RESOURCES) $(call THEN,$(RUN) analysis accuracy '$(RUNS)/accuracy')
 
 comparison: $(INSTALLED) ## collisions that other methods have computed, by law of friction, beside what they find
-	@$(RUN) campaigns run comparison --runs '$(RUNS)' $(RESOURCES) ; code=$$?; \
-		[ $$code -gt 1 ] || $(RUN) analysis comparison '$(RUNS)/comparison'; drawn=$$?; \
-		[ $$code -ne 0 ] || code=$$drawn; exit $$code
+	@$(RUN) campaigns run comparison --runs '$(RUNS)' $(RESOURCES) \
+		$(call THEN,$(RUN) analysis comparison '$(RUNS)/comparison')
 
 stability: $(INSTALLED) ## run stiff and extreme cases; each is stable, or stopped with a reason
 	@$(RUN) engine stability '$(RUNS)/stability' $(if $(WORKERS),--workers $(WORKERS))

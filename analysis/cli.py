@@ -46,23 +46,13 @@ def collect(campaign: Path) -> None:
 @app.command()
 def accuracy(campaign: Path) -> None:
     """Compare the cases of a campaign that varies one setting at a time: what each costs and changes."""
-    results, text, written = write_accuracy(campaign)
-    typer.echo(text)
-    for line in reasons(results):
-        typer.echo(line)
-    typer.echo("written: " + ", ".join(str(path) for path in written))
-    _fail_on_damage(results)
+    _tell(*write_accuracy(campaign))
 
 
 @app.command()
 def comparison(campaign: Path) -> None:
     """Show the cases of a campaign beside what other methods find in the same collisions."""
-    results, text, written = write_comparison(campaign)
-    typer.echo(text)
-    for line in reasons(results):
-        typer.echo(line)
-    typer.echo("written: " + ", ".join(str(path) for path in written))
-    _fail_on_damage(results)
+    _tell(*write_comparison(campaign))
 
 
 @app.command()
@@ -74,6 +64,15 @@ def remnant(job: Path) -> None:
         typer.echo(f"not done: last snapshot, {particles.time:g} s after contact")
     for name, value in measure(directory, particles, clumps_of(particles)).items():
         typer.echo(f"{name:24} {value:<14.6g} {OUTCOMES[name].units:7} {OUTCOMES[name].long_name}")
+
+
+def _tell(results: xr.Dataset, text: str, written: list[Path]) -> None:
+    """Print the tables of a campaign, what its results lack and which files were written."""
+    typer.echo(text)
+    for line in reasons(results):
+        typer.echo(line)
+    typer.echo("written: " + ", ".join(str(path) for path in written))
+    _fail_on_damage(results)
 
 
 def _fail_on_damage(results: xr.Dataset) -> None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from analysis.accuracy.cases import SEVERAL
 from analysis.accuracy.measure import MEASURED
 from analysis.remnant.variables import OUTCOMES
-from analysis.report.figures.style import GREY, MARKERS, styled
+from analysis.report.figures.style import GREY, MARKERS, SYMBOLS, styled
 from analysis.results.variables import NONE
 from engine.verification.accuracy.log_axes import label_decades
 from engine.verification.accuracy.pareto import pareto
@@ -24,8 +24,6 @@ Look = tuple[NDArray[np.float64], str]
 
 HIDDEN = 0.05
 """Relative difference of errors below which two cases lie on top of each other."""
-
-TITLES = {"mass_ratio": "$M_\\mathrm{lr}\\,/\\,M_\\mathrm{target}$", "b_over_a": "$b/a$", "c_over_a": "$c/a$"}
 
 
 @styled
@@ -43,7 +41,7 @@ def error_against_cost(data: xr.Dataset) -> Figure:
     for axes, name in zip(panels.flat, MEASURED, strict=True):
         axes.set(xscale="log", yscale="log")
         _panel(axes, errors(data, name), looks)
-        axes.set_title(TITLES.get(name, f"bulk density [{OUTCOMES[name].units}]"))
+        axes.set_title(SYMBOLS.get(name, f"bulk density [{OUTCOMES[name].units}]"))
     figure.supxlabel("CPU time of a run [s]", fontsize=9)
     figure.supylabel(f"difference to {data.attrs['finest']}", fontsize=9)
     figure.legend(handles=_legend(looks), loc="outside right center")

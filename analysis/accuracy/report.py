@@ -11,6 +11,7 @@ from analysis.accuracy.measure import MEASURED, accuracy
 from analysis.remnant.variables import DRIFTS
 from analysis.report.figures.style import save
 from analysis.results.collect import collect
+from analysis.results.tables import markdown_table
 from campaigns.campaign import KeptCampaign, read_campaign
 from engine.errors import SceneError
 from engine.job.directory import JobState
@@ -77,7 +78,7 @@ def _values(data: xr.Dataset) -> str:
         ]
         for name, case in _each(data)
     ]
-    return _table(["case", "runs", *HEADS.values(), "steps", "CPU time [s]"], rows)
+    return markdown_table(["case", "runs", *HEADS.values(), "steps", "CPU time [s]"], rows)
 
 
 def _changes(data: xr.Dataset, role: str) -> str:
@@ -86,12 +87,12 @@ def _changes(data: xr.Dataset, role: str) -> str:
         for name, case in _each(data)
         if case[f"mass_ratio_minus_{role}"].notnull()
     ]
-    return _table(["case", *HEADS.values()], rows)
+    return markdown_table(["case", *HEADS.values()], rows)
 
 
 def _drifts(data: xr.Dataset) -> str:
     rows = [[name, *(f"{float(case[key]):.2g}" for key in DRIFTS)] for name, case in _each(data)]
-    return _table(["case", "mass", "momentum", "angular momentum", "energy"], rows)
+    return markdown_table(["case", "mass", "momentum", "angular momentum", "energy"], rows)
 
 
 def _orders(data: xr.Dataset) -> str:
@@ -101,7 +102,7 @@ def _orders(data: xr.Dataset) -> str:
         [str(step), *(_plain(float(data[name].sel(refinement=step)), 1) for name in names)]
         for step in data["refinement"].values
     ]
-    return _table(["particles", *heads], rows)
+    return markdown_table(["particles", *heads], rows)
 
 
 def _each(data: xr.Dataset) -> Iterable[tuple[str, xr.Dataset]]:
@@ -118,8 +119,3 @@ def _number(case: xr.Dataset, name: str, decimals: int | None = None, sign: str 
 
 def _plain(value: float, decimals: int) -> str:
     return f"{value:.{decimals}f}" if value == value else "-"
-
-
-def _table(heads: list[str], rows: list[list[str]]) -> str:
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)

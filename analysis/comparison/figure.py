@@ -6,18 +6,19 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.comparison.rows import COLLISION, OWN
-from analysis.report.figures.style import BLUE, GREY, MARKERS, ORANGE, styled
+from analysis.comparison.rows import COLLISION, OWN, label
+from analysis.report.figures.style import BLUE, GREY, MARKERS, ORANGE, SYMBOLS, styled
 
 Name = tuple[str, str]
 """Method and material."""
 
 TITLES = {
-    "mass_ratio": "$M_\\mathrm{lr}\\,/\\,M_\\mathrm{target}$",
+    "mass_ratio": SYMBOLS["mass_ratio"],
     "bound_mass_ratio": "bound mass$\\,/\\,M_\\mathrm{target}$",
-    "b_over_a": "$b/a$",
-    "c_over_a": "$c/a$",
+    "b_over_a": SYMBOLS["b_over_a"],
+    "c_over_a": SYMBOLS["c_over_a"],
 }
+"""Of the panels of a collision."""
 
 
 @styled
@@ -39,7 +40,7 @@ def beside_other_methods(rows: pd.DataFrame) -> Figure:
     for axes, title in zip(panels[0], TITLES.values(), strict=True):
         axes.set_title(title)
     handles = {
-        label: handle for axes in panels.flat for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+        text: handle for axes in panels.flat for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)
     }
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3)
     return figure
@@ -60,6 +61,6 @@ def _panel(axes: Axes, group: pd.DataFrame, quantity: str, names: list[Name], lo
             color=colour,
             markerfacecolor=colour if own else "white",
             linestyle="none",
-            label=", ".join(part for part in name if part),
+            label=label(*name),
         )
     axes.set(ylim=(-len(names), 1), yticks=[])

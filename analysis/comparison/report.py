@@ -6,9 +6,10 @@ import pandas as pd
 import xarray as xr
 
 from analysis.comparison.figure import beside_other_methods
-from analysis.comparison.rows import COLLISION, MEASURED, compared
+from analysis.comparison.rows import COLLISION, MEASURED, compared, label
 from analysis.report.figures.style import save
 from analysis.results.collect import collect
+from analysis.results.tables import markdown_table
 from engine.job.storage import write_text
 
 HEADS = ["method", "particles", "t [s]", "M_lr/M_target", "second", "bound", "b/a", "c/a"]
@@ -45,19 +46,14 @@ def markdown(rows: pd.DataFrame) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def label(row: pd.Series) -> str:
-    """Return the method and the material of a row."""
-    return f"{row['method']}, {row['material']}" if row["material"] else str(row["method"])
-
-
 def _table(group: pd.DataFrame) -> str:
-    lines = [HEADS, ["---"] * len(HEADS)]
+    lines = []
     for _, row in group.iterrows():
         settled = ", settled" if row.get("settled") == "yes" else ""
         size = f"2 x {row['particles']:,.0f}" if row["particles"] == row["particles"] else ""
         time = f"{row['time']:,.0f}{settled}" if row["time"] == row["time"] else settled.removeprefix(", ")
-        lines.append([label(row), size, time, *(_number(row, name) for name in MEASURED)])
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+        lines.append([label(row["method"], row["material"]), size, time, *(_number(row, name) for name in MEASURED)])
+    return markdown_table(HEADS, lines)
 
 
 def _number(row: pd.Series, name: str) -> str:

@@ -27,6 +27,11 @@ OWN = "this study"
 """Method of the rows of the campaign."""
 
 
+def label(method: str, material: str) -> str:
+    """Return what a row is called."""
+    return f"{method}, {material}" if material else method
+
+
 def references() -> pd.DataFrame:
     """Return what other methods find: velocity [m/s], angle [deg], method, material, particles a body, time [s]."""
     return pd.read_csv(REFERENCES).drop(columns="source")
@@ -43,7 +48,7 @@ def compared(results: xr.Dataset) -> pd.DataFrame:
     """
     own = own_rows(results)
     collisions = own[COLLISION].drop_duplicates()
-    others = references().assign(runs=1.0) if _radii(results) == (RADIUS, RADIUS) else references().iloc[:0]
+    others = references() if _radii(results) == (RADIUS, RADIUS) else references().iloc[:0]
     rows = pd.concat([own, others, scaling_rows(results, collisions)], ignore_index=True)
     order = {tuple(pair): i for i, pair in enumerate(collisions.to_numpy())}
     place = [order.get(pair, -1) for pair in zip(rows["velocity"], rows["angle"], strict=True)]

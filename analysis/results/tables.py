@@ -126,6 +126,12 @@ def reasons(results: xr.Dataset, *states: str) -> list[str]:
     return [f"{row.job}: {row.state}: {row.reason}" for row in without.itertuples()]
 
 
+def markdown_table(heads: list[str], rows: list[list[str]]) -> str:
+    """Return a table of texts in Markdown."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
 def _text(value: object, decimals: int | None = None) -> str:
     if not isinstance(value, float):
         return str(value)

@@ -82,10 +82,9 @@ class Constitution:
         half_work = 0.5 / rho0 * ddot(before, strain)
         E, D = self.energy.after(p, 2.0 * half_work), self.damage.value(p)
         J, dilation = 1.0 + j, self.packing.dilation(p)
-        P, c2 = self.eos.evaluate(p, (dilation - j) / J, E, body)
+        P, c2 = self.evaluate(p, j, E, body)
         if P < 0.0:
             P *= 1.0 - D
-        c2 *= (1.0 + dilation) ** 2
         s = self.shear.stress(p, H, growth, J, P, E, D, body)
         stress, diffusivity = self.viscosity.stress(p, symmetric(L), rho0 / J, ti.sqrt(c2))
         tau = s + J * (stress - P * identity())
@@ -133,10 +132,16 @@ class Constitution:
     @ti.func
     def signal_speed(self, p):
         """Return the signal speed [m/s] in the present state of particle p."""
-        body, j = self.particles.body[p], self.particles.j[p]
+        body = self.particles.body[p]
+        _, c2 = self.evaluate(p, self.particles.j[p], self.energy.after(p, 0.0), body)
+        return self.signal_speed_of(c2, body)
+
+    @ti.func
+    def evaluate(self, p, j, E, body):
+        """Return the pressure [Pa], and a bound of the squared speed of sound [m^2/s^2], J_c^2 c^2 of loose rubble."""
         dilation = self.packing.dilation(p)
-        _, c2 = self.eos.evaluate(p, (dilation - j) / (1.0 + j), self.energy.after(p, 0.0), body)
-        return self.signal_speed_of(c2 * (1.0 + dilation) ** 2, body)
+        P, c2 = self.eos.evaluate(p, (dilation - j) / (1.0 + j), E, body)
+        return P, c2 * (1.0 + dilation) ** 2
 
     @ti.func
     def expansion(self, p):

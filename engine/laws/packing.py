@@ -26,7 +26,7 @@ class CriticalState:
         self.table = per_body(
             looseness=looseness,
             dilatancy=dilatancy,
-            rate=[angle / loose if loose else 0.0 for angle, loose in zip(dilatancy, looseness, strict=True)],
+            rate=[b / loose if loose else 0.0 for b, loose in zip(dilatancy, looseness, strict=True)],
             # of pressure, which makes the critical packing denser
             crushing=[
                 1.0 / material.crushing_pressure if material.crushing_pressure else 0.0 for material in materials
@@ -50,12 +50,13 @@ class CriticalState:
 
         Where other things than friction limit the stress, dilatancy takes no more than the work of shear.
         """
-        dilation, critical, work = self.plastic_dilation[p], self.critical(P, body), self.table[body].dilatancy * P
+        m, dilation, critical = self.table[body], self.plastic_dilation[p], self.critical(P, body)
+        work = m.dilatancy * P
         if work > Y:
             shear *= Y / work
-        dilation = critical + (dilation - critical) * ti.exp(-self.table[body].rate * D * shear)
-        if D == 1.0 and self.table[body].looseness < J - 1.0:
-            dilation = self.table[body].looseness
+        dilation = critical + (dilation - critical) * ti.exp(-m.rate * D * shear)
+        if D == 1.0 and m.looseness < J - 1.0:
+            dilation = m.looseness
         self.plastic_dilation[p] = dilation
 
     @ti.func

@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from analysis.remnant.outcome import Outcomes
-from analysis.report.figures.style import GREY, styled
+from analysis.report.figures.style import GREY, SYMBOLS, styled
 from analysis.results.tables import series
 from engine.job.directory import JobState
 
@@ -20,9 +20,9 @@ NAME = "maps"
 CAPTION = "Mass and axis ratios of the largest remnant over velocity and angle."
 
 PANELS = {
-    "mass_ratio": (r"$M_\mathrm{lr}\,/\,M_\mathrm{target}$", 2.0),
-    "b_over_a": ("$b/a$", 1.0),
-    "c_over_a": ("$c/a$", 1.0),
+    "mass_ratio": (SYMBOLS["mass_ratio"], 2.0),
+    "b_over_a": (SYMBOLS["b_over_a"], 1.0),
+    "c_over_a": (SYMBOLS["c_over_a"], 1.0),
 }
 """Title and upper end of the colour scale of each map."""
 

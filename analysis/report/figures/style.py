@@ -39,6 +39,9 @@ class Drawing(Protocol):
 
 MARKERS = "osD^vP*X"
 
+SYMBOLS = {"mass_ratio": r"$M_\mathrm{lr}\,/\,M_\mathrm{target}$", "b_over_a": "$b/a$", "c_over_a": "$c/a$"}
+"""Of outcomes, in figures."""
+
 STYLE = {
     "font.family": "DejaVu Sans",
     "font.size": 9,

@@ -74,7 +74,7 @@ def test_scattering_keeps_mass_and_momentum():
     simulation.start(v=v, C=1e-4 * np.random.default_rng(3).normal(size=(200, 3, 3)))
     simulation.clock.pause_time[None] = 1.0
     simulation.transfer.begin()
-    projection = next(stage for stage in simulation.transfer.stages if getattr(stage, "name", "") == "projection")
+    projection = simulation.transfer.stages[2]
     projection.particles_to_grid()
     mass = simulation.particles.read("mass")["mass"]
     expected = np.array([*(mass[:, None] * v).sum(axis=0), mass.sum()])
