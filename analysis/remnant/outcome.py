@@ -19,7 +19,7 @@ from analysis.remnant.spin import spin_period
 from analysis.remnant.variables import DAMAGED, DRIFTS, UndescribedError, described
 from engine.errors import JobError, RunFault, SceneError
 from engine.job.directory import JobDirectory, JobState
-from engine.scene.scene import Scene, scene_in
+from engine.scene.scene import Scene, contains_scene, scene_in
 
 Numbers = dict[str, float]
 
@@ -131,8 +131,8 @@ def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Number
         UndescribedError: a variable is measured and not described, or described and not measured.
     """
     scene, status = scene_in(job.path), job.status()
-    if particles.scene_hash != scene.hash():
-        raise JobError(f"{job.path}: holds particles that are not of the scene in this directory")
+    if not contains_scene(job.path, particles.scene_hash):
+        raise SceneError(f"{job.path}: contains particles that are not of the scene in this directory")
     remnant = particles.select(labels == 0)
     clumps = as_points(labels, particles.mass, particles.position, particles.velocity)
     bound = bound_to_largest(clumps)

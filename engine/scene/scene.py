@@ -1,5 +1,6 @@
 """A scene: the bodies, the parts of physics they obey, and how finely to resolve them. SI units throughout."""
 
+import hashlib
 import math
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -282,12 +283,33 @@ def scene_in(directory: Path) -> Scene:
     Raises:
         SceneError: neither file is there, or both are, or it is not a scene.
     """
+    return read_scene(scene_file(directory))
+
+
+def scene_file(directory: Path) -> Path:
+    """The file in a job directory that contains its scene.
+
+    Raises:
+        SceneError: there is none, or more than one.
+    """
     found = [path for path in (directory / "scene.json", directory / "scene.toml") if path.is_file()]
     if not found:
         raise SceneError(f"{directory}: contains no scene.json or scene.toml; write the scene to run there first")
     if len(found) > 1:
         raise SceneError(f"{directory}: contains scene.json and scene.toml; keep the one to run")
-    return read_scene(found[0])
+    return found[0]
+
+
+def contains_scene(directory: Path, scene_hash: str) -> bool:
+    """Whether the scene of a job directory has this hash, as it means now or as its file was written.
+
+    A version with more keys writes the same scene as another text.
+
+    Raises:
+        SceneError: the scene cannot be read.
+    """
+    written = hashlib.sha256(scene_file(directory).read_bytes()).hexdigest()
+    return scene_hash in (written, scene_in(directory).hash())
 
 
 def scene_at(source: Path) -> Scene:

@@ -1,5 +1,6 @@
 """The data set of a campaign: every kind of job, coordinates, attributes, round trip."""
 
+import hashlib
 import json
 from pathlib import Path
 from typing import Any
@@ -171,11 +172,6 @@ FAULTS = {
     "status with a list": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": [1]}'), *TIME),
     "status with a text": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": "x"}'), *TIME),
     "state": (lambda job: (job / "status.json").write_text('{"state": "well"}'), "corrupt", "state"),
-    "other scene": (
-        lambda job: write_dataset(job / "final.nc", remnant().assign_attrs(scene_hash="other")),
-        "corrupt",
-        "not of the scene",
-    ),
     "advice": (truncate, "corrupt", "delete the directory of this job"),
     "no history": (lambda job: (job / "history.nc").unlink(), "corrupt", "history.nc"),
     "short history": (
@@ -198,6 +194,10 @@ def test_a_damaged_job_gives_nan_and_its_reason(tmp_path: Path, fault: str) -> N
 
 OTHER_VERSIONS = {
     "physics": (lambda job: write_dataset(job / "final.nc", remnant(physics_version=7)), "physics version 7, not 1"),
+    "another scene": (
+        lambda job: write_dataset(job / "final.nc", remnant().assign_attrs(scene_hash="other")),
+        "not of the scene",
+    ),
     "a renamed key": (rename_a_key, "is now"),
     "a scene without bodies": (lambda job: (job / "scene.json").write_text("{}"), "scene.json"),
 }
@@ -215,6 +215,17 @@ def test_a_job_of_another_version_is_to_be_kept(tmp_path: Path, version: str) ->
     assert results["state"].values.tolist() == ["corrupt", "done"]
     told = str(results["reason"].values[0])
     assert reason in told and "keep it: it may be sound" in told and "delete" not in told
+
+
+def test_a_scene_that_a_version_with_fewer_keys_wrote_is_measured(tmp_path: Path) -> None:
+    job = one_job(tmp_path)
+    scene = json.loads((job / "scene.json").read_text())
+    del scene["numerics"]["filter_time"]
+    text = json.dumps(scene)
+    (job / "scene.json").write_text(text)
+    scene_hash = hashlib.sha256(text.encode()).hexdigest()
+    write_dataset(job / "final.nc", remnant().assign_attrs(scene_hash=scene_hash))
+    assert collect(tmp_path)["state"].item() == "done"
 
 
 @pytest.mark.parametrize("version", OTHER_VERSIONS)
