@@ -12,7 +12,7 @@ from analysis.results.collect import collect
 from analysis.results.tables import markdown_table
 from engine.job.storage import write_text
 
-HEADS = ["method", "particles", "t [s]", "M_lr/M_target", "second", "bound", "b/a", "c/a"]
+HEADS = ["method", "particles", "runs", "t [s]", "M_lr/M_target", "second", "bound", "b/a", "c/a"]
 
 
 def write_comparison(campaign_directory: Path) -> tuple[xr.Dataset, str, list[Path]]:
@@ -52,7 +52,9 @@ def _table(group: pd.DataFrame) -> str:
         settled = ", settled" if row.get("settled") == "yes" else ""
         size = f"2 x {row['particles']:,.0f}" if row["particles"] == row["particles"] else ""
         time = f"{row['time']:,.0f}{settled}" if row["time"] == row["time"] else settled.removeprefix(", ")
-        lines.append([label(row["method"], row["material"]), size, time, *(_number(row, name) for name in MEASURED)])
+        runs = f"{row['runs']:.0f}" if row["runs"] == row["runs"] else ""
+        method = label(row["method"], row["material"])
+        lines.append([method, size, runs, time, *(_number(row, name) for name in MEASURED)])
     return markdown_table(HEADS, lines)
 
 

@@ -20,6 +20,9 @@ from engine.verification.processes import in_own_process
 
 KEYS = ["scene", "setting", "value"]
 
+ROUND_OFF = 1e-12
+"""Relative error below which it is round-off."""
+
 ATTRIBUTES = {
     "error": {"long_name": "error against the exact solution or published values", "units": "1"},
     "cpu_time": {"long_name": "CPU time of all time steps", "units": "s"},
@@ -112,10 +115,14 @@ def write(path: Path, runs: pd.DataFrame) -> None:
 
 
 def orders(runs: pd.DataFrame) -> pd.DataFrame:
-    """Return the exponent q of error ~ dx^q or dt^q for resolutions and time steps, by scene and setting."""
+    """Return the exponent q of error ~ dx^q or dt^q for resolutions and time steps, by scene and setting.
+
+    Errors of round-off have no order.
+    """
     rows = []
     for (scene, setting), group in runs.groupby(["scene", "setting"], sort=False):
-        if setting in ("particles", "cells", "steps", "numerics.cfl") and len(group) > 1:
+        varied = setting in ("particles", "cells", "steps", "numerics.cfl") and len(group) > 1
+        if varied and group["error"].min() > ROUND_OFF:
             sizes = np.asarray(group["value"], dtype=float) ** (-1.0 / 3.0 if setting == "particles" else 1.0)
             sign = -1.0 if setting in ("cells", "steps") else 1.0
             rows.append((scene, setting, sign * fitted_order(list(sizes), list(group["error"]))))

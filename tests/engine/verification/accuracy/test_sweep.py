@@ -58,11 +58,13 @@ def test_runs_that_a_file_contains_are_not_repeated(tmp_path: Path, monkeypatch:
 
 
 def test_orders_are_those_of_the_data():
+    """And none of round-off."""
     wave = [Trial("wave", "cells", str(n), 5.0 / n**2, 1.0) for n in (8, 16, 32)]
     steps = [Trial("wave", "numerics.cfl", str(cfl), 3.0 * cfl, 1.0) for cfl in (0.1, 0.5)]
     ball = [Trial("ball", "particles", str(n), n ** (-1.0 / 3.0), 1.0) for n in (100, 1000)]
     other = [Trial("wave", "numerics.precision", name, 1.0, 1.0) for name in ("f64", "f32")]
-    table = orders(pd.DataFrame([asdict(run) for run in wave + steps + ball + other]))
+    exact = [Trial("exact", "cells", str(n), error, 1.0) for n, error in ((8, 0.0), (16, 1e-15))]
+    table = orders(pd.DataFrame([asdict(run) for run in wave + steps + ball + other + exact]))
     assert list(zip(table["scene"], table["setting"], strict=True)) == [
         ("wave", "cells"),
         ("wave", "numerics.cfl"),
