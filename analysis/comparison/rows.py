@@ -23,6 +23,9 @@ MEASURED = ["mass_ratio", "second_mass_ratio", "bound_mass_ratio", "b_over_a", "
 RADIUS = 50e3
 """Of both bodies in all references [m]."""
 
+FRICTION = "materials.basalt.friction"
+"""Setting that a row names if it is not that of all rows."""
+
 OWN = "this study"
 """Method of the rows of the campaign."""
 
@@ -69,14 +72,26 @@ def own_rows(results: xr.Dataset) -> pd.DataFrame:
     for name in MEASURED:
         table[name], table[f"{name}_spread"] = results[name].mean("seed"), spread(results[name])
     table["time"] = results["time_after_contact"].mean("seed")
-    for name in COLLISION:
-        table[name] = results[name].max("seed")
+    for name in (*COLLISION, "particles", FRICTION):
+        table[name] = _setting(results, name)
     rows = table.to_dataframe().reset_index().query("runs > 0")
     others = [str(name) for name in results.dims if name not in ("case", "seed")]
-    material = rows[others].astype(str).agg(", ".join, axis=1) if others else ""
-    several = rows.groupby([*COLLISION, *others])["case"].transform("nunique") > 1
-    named = rows["case"].where(several, "").str.cat(pd.Series(material, index=rows.index), sep=", ").str.strip(", ")
-    return rows.assign(method=OWN, material=named, particles=_particles(results)).drop(columns=["case", *others])
+    return rows.assign(method=OWN, material=_materials(rows, others)).drop(columns=["case", *others])
+
+
+def _setting(results: xr.Dataset, name: str) -> xr.DataArray:
+    """A setting of every row; not a number where no run has it."""
+    given = results[name] if name in results.variables else xr.DataArray(results.attrs.get(name, np.nan))
+    return given.max("seed") if "seed" in given.dims else given
+
+
+def _materials(rows: pd.DataFrame, others: list[str]) -> pd.Series:
+    """What tells rows of one collision apart: case if several are of it, the other axes, friction if it varies."""
+    several = rows.groupby([*COLLISION, "particles", *others], dropna=False)["case"].transform("nunique") > 1
+    parts = rows[["case", *others]].astype(str).assign(case=rows["case"].where(several, ""))
+    if rows[FRICTION].nunique() > 1:
+        parts[FRICTION] = rows[FRICTION].map("friction {:.3g}".format)
+    return pd.Series([", ".join(filter(None, row)) for row in parts.to_numpy()], index=rows.index)
 
 
 def scaling_rows(results: xr.Dataset, collisions: pd.DataFrame) -> pd.DataFrame:
@@ -96,7 +111,3 @@ def _radii(results: xr.Dataset) -> tuple[float, float] | None:
     if target in (None, NONE) or projectile is None:
         return None
     return float(target), float(target if projectile == NONE else projectile)
-
-
-def _particles(results: xr.Dataset) -> float:
-    return float(results.attrs.get("particles", np.nan))

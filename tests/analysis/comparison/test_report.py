@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from analysis.cli import app
 from analysis.comparison.figure import beside_other_methods
 from analysis.comparison.report import markdown
-from analysis.comparison.rows import MEASURED, OWN, REFERENCES, compared, references
+from analysis.comparison.rows import FRICTION, MEASURED, OWN, REFERENCES, compared, references
 from engine.errors import SceneError
 from engine.scene.collision import Collision
 from tests.helpers.fake_jobs import lattice_ellipsoid, particles, write_campaign, write_job
@@ -74,6 +74,21 @@ def test_cases_of_one_collision_are_told_apart_by_their_names() -> None:
     assert own[own["method"] == OWN]["material"].tolist() == ["fast, one", "fast, other", "slow, one", "slow, other"]
 
 
+def test_rows_say_the_size_and_the_friction_that_vary_between_cases() -> None:
+    both, dims = results(), ("case", "law", "seed")
+    del both.attrs["particles"]
+    zero = xr.zeros_like(both["velocity"])
+    varied = both.assign_coords(
+        {
+            "particles": (zero + xr.DataArray([2000.0, 5000.0], dims="case")).transpose(*dims),
+            FRICTION: (zero + xr.DataArray([0.5, 0.65], dims="case")).transpose(*dims),
+        }
+    )
+    own = compared(varied).query("method == @OWN")
+    assert own["particles"].tolist() == [2000, 2000, 5000, 5000]
+    assert own["material"].tolist()[1:3] == ["other, friction 0.5", "one, friction 0.65"]
+
+
 def test_references_are_complete_and_possible() -> None:
     table = pd.read_csv(REFERENCES)
     assert table["source"].notna().all() and table[["velocity", "angle", "method", "particles"]].notna().all(axis=None)
@@ -85,7 +100,7 @@ def test_references_are_complete_and_possible() -> None:
 def test_tables_and_figure_show_every_row() -> None:
     rows = compared(results())
     text = markdown(rows)
-    assert "200 m/s, 5 deg" in text and "| this study, one | 2 x 2,000 | 1 | 1.00 +- 1.00 |" in text
+    assert "200 m/s, 5 deg" in text and "| this study, one | 2 x 2,000 | 3 | 1 | 1.00 +- 1.00 |" in text
     assert text.count("\n| ") == len(rows) + 4
     figure = beside_other_methods(rows)
     assert len(figure.axes) == 8 and "this study, other" in [t.get_text() for t in figure.legends[0].get_texts()]
