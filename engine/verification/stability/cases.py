@@ -31,6 +31,12 @@ def broken(scene: Scene) -> Scene:
     return altered(scene.model_copy(update={"bodies": bodies}), "physics.fracture", None)
 
 
+def loosening(velocity: float = 200.0) -> Scene:
+    """Return a collision [m/s] of rock that loosens as it shears once it is broken."""
+    basalt = {"critical_density": 2000.0, "dilatancy": 0.177, "crushing_pressure": 1e7}
+    return impact(velocity, parameter_set="rubble", materials={"basalt": basalt}, contact=False)
+
+
 def pair(velocity: tuple[float, float, float]) -> Scene:
     """Return a scene of two bodies of one particle, of which the second moves [m/s]."""
     one = Sphere(radius=50e3, particles=1, hydrostatic=False)
@@ -167,6 +173,8 @@ def _parts() -> list[ExtremeCase]:
         ExtremeCase("parts", "fluid", impact().model_copy(update={"physics": FLUID})),
         ExtremeCase("parts", "set talk", impact(parameter_set="talk")),
         ExtremeCase("parts", "set rubble", impact(parameter_set="rubble")),
+        ExtremeCase("parts", "rubble that loosens", broken(loosening())),
+        ExtremeCase("parts", "rubble that loosens, 5 km/s", loosening(5e3)),
         ExtremeCase("parts", "bodies share nodes", impact(contact=False)),
         ExtremeCase("parts", "bodies share nodes, 5 km/s", impact(5e3, contact=False)),
         ExtremeCase("parts", "viscosity 3e5 m2/s", impact(viscosity=ViscosityCoefficients(shear=3e5))),
