@@ -5,6 +5,7 @@ import time
 from contextlib import redirect_stdout, suppress
 from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import taichi as ti
@@ -45,18 +46,16 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
     """Start Taichi in this process; all fields that exist become invalid.
 
     Args:
-        arch: `cpu` or `cuda`.
+        arch: `cpu`, `cuda`, `vulkan`, or `gpu` for the one of both that there is.
         threads: CPU threads; all cores if `None`.
 
     Raises:
         SceneError: the device is not available.
     """
-    if arch == "cuda" and not is_arch_supported(ti.cuda):
-        raise SceneError("--arch cuda: Taichi finds no CUDA device here; use --arch cpu")
     cache_source_positions()
     with redirect_stdout(StringIO()):  # ti.init prints a banner that no option silences
         ti.init(
-            arch={"cpu": ti.cpu, "cuda": ti.cuda}[arch],
+            arch=_available(arch),
             default_fp=Real,
             default_ip=ti.i32,
             fast_math=False,
@@ -65,6 +64,24 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
             offline_cache_file_path=str(_cache_directory()),
             log_level=ti.ERROR,
         )
+
+
+def _available(arch: str) -> Any:
+    """Taichi's name of the device.
+
+    Raises:
+        SceneError: it is not here.
+    """
+    choices = {"cpu": (ti.cpu,), "cuda": (ti.cuda,), "vulkan": (ti.vulkan,), "gpu": (ti.cuda, ti.vulkan)}[arch]
+    found = [choice for choice in choices if choice == ti.cpu or is_arch_supported(choice)]
+    if not found:
+        wanted = {
+            "cuda": "no CUDA device",
+            "vulkan": "no Vulkan driver",
+            "gpu": "neither a CUDA device nor a Vulkan driver",
+        }
+        raise SceneError(f"--arch {arch}: Taichi finds {wanted[arch]} here; use --arch cpu")
+    return found[0]
 
 
 def wait() -> None:
@@ -91,6 +108,11 @@ def require_precision(precision: str) -> None:
 def on_gpu() -> bool:
     """Return whether kernels run on a GPU."""
     return bool(current_cfg().arch != ti.cpu)
+
+
+def has_elementary_functions() -> bool:
+    """Return whether the device has exp, log, pow, sin and their inverses in the precision of this process."""
+    return PRECISION == "f32" or current_cfg().arch != ti.vulkan
 
 
 def _cache_directory() -> Path:

@@ -1,6 +1,7 @@
 """Fields on the device: their sizes, and their contents from arrays of the host."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,24 @@ def capacity(count: int) -> int:
     return max(1024, 1 << (count - 1).bit_length())
 
 
+def allocate(kind: Any, shape: int | tuple[int, ...] = ()) -> ti.Field:
+    """Return a new field that takes a multiple of 8 bytes.
+
+    A kernel for Vulkan looks for a number of 8 bytes at the next lower multiple of 8, so none may lie behind an odd
+    number of those with 4 bytes.
+
+    Args:
+        kind: Taichi's type of an entry.
+        shape: its size, as of an array; one more if the first is odd.
+    """
+    make = kind.field if hasattr(kind, "field") else partial(ti.field, kind)
+    if shape == ():
+        make(shape=())  # the other half of 8 bytes
+        return make(shape=())
+    first, *others = (shape,) if isinstance(shape, int) else shape
+    return make(shape=(first + first % 2, *others))
+
+
 def filled(dtype: Any, values: NDArray[np.generic]) -> ti.Field:
     """Return a one-dimensional field that begins with given values; the rest is zero.
 
@@ -26,7 +45,7 @@ def filled(dtype: Any, values: NDArray[np.generic]) -> ti.Field:
         dtype: Taichi's type of an entry.
         values: shape [count].
     """
-    field = ti.field(dtype, shape=capacity(len(values)))
+    field = allocate(dtype, capacity(len(values)))
     overwrite(field, values)
     return field
 
@@ -49,7 +68,7 @@ def per_body(**columns: Sequence[float]) -> StructField:
     Args:
         columns: values of each member of the struct, one per body.
     """
-    table = ti.types.struct(**dict.fromkeys(columns, Real)).field(shape=capacity(len(next(iter(columns.values())))))
+    table = allocate(ti.types.struct(**dict.fromkeys(columns, Real)), capacity(len(next(iter(columns.values())))))
     for name, values in columns.items():
         for body, value in enumerate(values):
             getattr(table, name)[body] = value

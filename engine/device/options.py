@@ -15,6 +15,8 @@ class Arch(StrEnum):
 
     CPU = "cpu"
     CUDA = "cuda"
+    VULKAN = "vulkan"
+    GPU = "gpu"
 
 
 Precision = Literal["f64", "f32"]

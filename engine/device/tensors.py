@@ -9,6 +9,7 @@ import taichi as ti
 import taichi.math as tm
 
 from engine.device.backend import mat3, vec3, vec6
+from engine.device.elementary import acos, cos, exp, log
 
 SERIES_LIMIT = 0.05
 """Frobenius norm up to which the series below reach round-off; larger tensors go through their eigenvectors."""
@@ -142,17 +143,17 @@ def log1p(x):
     y = 1.0 + x
     result = x
     if y != 1.0:
-        result = x * ti.log(y) / (y - 1.0)
+        result = x * log(y) / (y - 1.0)
     return result
 
 
 @ti.func
 def expm1(x):
     """Return exp(x) - 1, without cancellation for small x (Higham 2002, section 1.14.1)."""
-    y = ti.exp(x)
+    y = exp(x)
     result = x
     if y != 1.0 and ti.abs(x) < 1.0:
-        result = (y - 1.0) * x / ti.log(y)
+        result = (y - 1.0) * x / log(y)
     elif y != 1.0:
         result = y - 1.0
     return result
@@ -212,7 +213,7 @@ def isolated_eigenvector(s):
     if scale > 0.0:
         q = s / scale
         half_determinant = ti.min(ti.max(0.5 * q.determinant(), -1.0), 1.0)
-        root = 2.0 * ti.cos(ti.acos(ti.abs(half_determinant)) / 3.0)
+        root = 2.0 * cos(acos(ti.abs(half_determinant)) / 3.0)
         value = root if half_determinant >= 0.0 else -root
         result = null_vector(q - value * identity())
     return result

@@ -6,7 +6,7 @@ A node's true bounding box decides whether its multipole is accepted, so any dis
 import taichi as ti
 
 from engine.device.backend import TASK, on_gpu, vec3
-from engine.device.fields import capacity
+from engine.device.fields import allocate, capacity
 from engine.gravity.multipoles import Multipoles
 from engine.state.particles import Particles
 
@@ -27,7 +27,7 @@ class BarnesHut(Multipoles):
         self.by_leaf = not on_gpu()
         self.batch = BATCH if self.by_leaf else 1
         walks = 1 << self.depth if self.by_leaf else self.room << self.depth
-        self.acting = ti.field(ti.i32, capacity(walks * self.batch))
+        self.acting = allocate(ti.i32, capacity(walks * self.batch))
 
     def solve(self, potential: bool) -> None:
         """Build the tree, then walk it for every group of targets; argument as `SelfGravity.solve`."""

@@ -12,7 +12,7 @@ import taichi as ti
 
 from engine.arrays import Indices, Vectors
 from engine.device.backend import Real, mat3, vec3, vec4, vec6
-from engine.device.fields import capacity
+from engine.device.fields import allocate, capacity
 from engine.device.tensors import identity, pack, unpack
 from engine.gravity.median_partition import median_order
 from engine.gravity.self_gravity import LANES, SelfGravity
@@ -47,12 +47,12 @@ class Multipoles(SelfGravity):
         self.depth, self.size = _shape(particles.count)
         self.room = -(-self.size // LANES) * LANES
         super().__init__(particles, radius, self.room << self.depth)
-        self.opening = ti.field(Real, ())
+        self.opening = allocate(Real)
         self.opening[None] = opening
         shape = capacity(2 << self.depth)
-        self.lower, self.upper = vec3.field(shape=shape), vec3.field(shape=shape)
-        self.centre, self.quadrupole = vec4.field(shape=shape), vec6.field(shape=shape)
-        self.nearest = ti.field(Real, shape)
+        self.lower, self.upper = allocate(vec3, shape), allocate(vec3, shape)
+        self.centre, self.quadrupole = allocate(vec4, shape), allocate(vec6, shape)
+        self.nearest = allocate(Real, shape)
 
     def arrange(self, x: Vectors) -> Indices:
         """Return the particles leaf by leaf, each leaf padded to whole rows; shapes as `SelfGravity.arrange`."""

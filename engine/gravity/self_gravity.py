@@ -8,7 +8,7 @@ import taichi as ti
 from engine.arrays import Indices, Scalars, Vectors
 from engine.constants import G_NEWTON
 from engine.device.backend import Real, on_gpu
-from engine.device.fields import capacity, overwrite
+from engine.device.fields import allocate, capacity, overwrite
 from engine.gravity.net_force import NetForce, remove_net_force_and_torque
 from engine.state.particles import Particles
 
@@ -43,10 +43,10 @@ class SelfGravity(ABC):
     def __init__(self, particles: Particles, radius: float, slots: int) -> None:
         self.particles, self.count = particles, particles.count
         self.acceleration = particles.require("acceleration")
-        self.ball, self.radius = radius, ti.field(Real, ())
+        self.ball, self.radius = radius, allocate(Real)
         shape = capacity(slots)
-        self.x, self.y, self.z, self.gm = (ti.field(Real, shape) for _ in range(4))
-        self.ax, self.ay, self.az, self.potential = (ti.field(Real, shape) for _ in range(4))
+        self.x, self.y, self.z, self.gm = (allocate(Real, shape) for _ in range(4))
+        self.ax, self.ay, self.az, self.potential = (allocate(Real, shape) for _ in range(4))
         self.lanes = 1 if on_gpu() else LANES
         self.row = ti.types.vector(self.lanes, Real)
 

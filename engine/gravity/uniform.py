@@ -5,6 +5,7 @@ import taichi as ti
 
 from engine.arrays import Scalars, Vectors
 from engine.device.backend import vec3
+from engine.device.fields import allocate
 from engine.scene.fields import Vector
 
 
@@ -17,7 +18,7 @@ class UniformGravity:
     """
 
     def __init__(self, acceleration: Vector) -> None:
-        self.acceleration = vec3.field(shape=())
+        self.acceleration = allocate(vec3)
         self.acceleration[None] = acceleration
 
     @ti.func

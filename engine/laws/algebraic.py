@@ -5,6 +5,7 @@ from types import FunctionType
 
 import taichi as ti
 
+from engine.device.elementary import power
 from engine.laws.equation_of_state import MaterialConstants
 from engine.scene.material import Material
 
@@ -33,5 +34,6 @@ class Algebraic(MaterialConstants):
 
 def device_function(formula: Formula) -> Formula:
     """Return a function of the host compiled for the device, without its annotations: Taichi would read them."""
-    compiled: Formula = ti.func(FunctionType(formula.__code__, formula.__globals__, formula.__name__))
+    names = {**formula.__globals__, "power": power}
+    compiled: Formula = ti.func(FunctionType(formula.__code__, names, formula.__name__))
     return compiled

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import taichi as ti
 
 from engine.device.backend import Real
+from engine.device.elementary import cbrt
 from engine.device.fields import filled, per_body
 from engine.device.tensors import largest_eigenvalue, norm_squared
 from engine.laws.flaws import Flaws
@@ -46,7 +47,7 @@ class Fracture:
                 active = self._active((largest_eigenvalue(s) - P) / m.modulus, number)
                 if active > 0:
                     cracks = active if ti.static(self.per_flaw) else 1
-                    cap = (ti.cast(active, Real) / total) ** (1.0 / 3.0)
+                    cap = cbrt(ti.cast(active, Real) / total)
                     result = ti.max(root, ti.min(root + cracks * m.rate * dt, cap))
         return result
 

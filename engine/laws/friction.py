@@ -9,6 +9,7 @@ import taichi as ti
 import taichi.math as tm
 
 from engine.device.backend import Real
+from engine.device.elementary import acos, asin, cos, power, sin
 from engine.device.tensors import norm_squared
 from engine.laws.interfaces import FrictionLaw
 
@@ -46,8 +47,8 @@ class MohrCoulomb:
     def coefficient(self, mu, s):
         """Return sin(phi)/(cos(th) - sin(th) sin(phi)/sqrt(3)), sin(3 th) the Lode parameter."""
         sine = 3.0 * mu / (2.0 * tm.sqrt(3.0) + mu)
-        theta = ti.asin(lode_parameter(s)) / 3.0
-        return sine / (ti.cos(theta) - ti.sin(theta) * sine / tm.sqrt(3.0))
+        theta = asin(lode_parameter(s)) / 3.0
+        return sine / (cos(theta) - sin(theta) * sine / tm.sqrt(3.0))
 
 
 @ti.data_oriented
@@ -66,7 +67,7 @@ class MatsuokaNakai:
             excess = mu**2 * (6.0 - 2.0 * tm.sqrt(3.0) * mu) / rest  # k - 9
             a = (excess + 6.0) / (3.0 * excess)
             b = (excess + 9.0) * lode_parameter(s) / (3.0 * tm.sqrt(3.0) * excess)
-            result = 0.5 / (ti.sqrt(a) * ti.cos(ti.acos(tm.clamp(-b / a**1.5, -1.0, 1.0)) / 3.0))
+            result = 0.5 / (ti.sqrt(a) * cos(acos(tm.clamp(-b / power(a, 1.5), -1.0, 1.0)) / 3.0))
         return result
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import taichi as ti
 
 from engine.device.backend import Real
+from engine.device.elementary import exp
 from engine.device.fields import per_body
 from engine.scene.material import Material
 from engine.state.particles import Particles
@@ -54,7 +55,7 @@ class CriticalState:
         work = m.dilatancy * P
         if work > Y:
             shear *= Y / work
-        dilation = critical + (dilation - critical) * ti.exp(-m.rate * D * shear)
+        dilation = critical + (dilation - critical) * exp(-m.rate * D * shear)
         if D == 1.0 and m.looseness < J - 1.0:
             dilation = m.looseness
         self.plastic_dilation[p] = dilation

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import taichi as ti
 
 from engine.device.backend import Real, mat3, vec6
+from engine.device.elementary import power
 from engine.device.fields import per_body
 from engine.device.tensors import (
     deviator,
@@ -33,7 +34,7 @@ def isochoric(growth):
     """Return (1 + growth)^(-2/3) - 1: its series to third order up to `SMALL_GROWTH`, the power itself beyond."""
     result = -growth * (2.0 / 3.0 - growth * (5.0 / 9.0 - growth * (40.0 / 81.0)))
     if ti.abs(growth) > SMALL_GROWTH:
-        result = ti.pow(1.0 + growth, -2.0 / 3.0) - 1.0
+        result = power(1.0 + growth, -2.0 / 3.0) - 1.0
     return result
 
 

@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from engine.device.elementary import exp
 from engine.laws.equation_of_state import MaterialConstants
 
 SOUND_SPEED_FLOOR = 0.1
@@ -71,8 +72,8 @@ def expanded(m, mu, E):
     omega = inverse_omega(m, eta, E)
     J = 1.0 / eta
     stretch = J - 1.0
-    gauss = ti.exp(-m.alpha * stretch * stretch)
-    cold = m.A * ti.exp(-m.beta * stretch)
+    gauss = exp(-m.alpha * stretch * stretch)
+    cold = m.A * exp(-m.beta * stretch)
     bracket = m.b * omega * eta * e + cold * mu
     bracket_eta = m.b * omega * (3.0 - 2.0 * omega) * e + cold * (1.0 + m.beta * mu * J * J)
     P = m.a * eta * e + bracket * gauss

@@ -3,6 +3,7 @@
 import taichi as ti
 
 from engine.device.backend import Real, mat3
+from engine.device.fields import allocate
 from engine.device.tensors import deviator, identity
 from engine.scene.scene import ViscosityCoefficients
 
@@ -18,7 +19,7 @@ class Viscosity:
 
     def __init__(self, coefficients: ViscosityCoefficients, dx: float) -> None:
         constants = {**coefficients.model_dump(), "dx": dx}
-        self.table = ti.types.struct(**dict.fromkeys(constants, Real)).field(shape=())
+        self.table = allocate(ti.types.struct(**dict.fromkeys(constants, Real)))
         for name, value in constants.items():
             getattr(self.table, name)[None] = value
 

@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from engine.device.elementary import power
 from engine.device.tensors import determinant_increment, moved, norm_squared, symmetric
 
 SMALLEST = 1e-30
@@ -30,5 +31,5 @@ def affine_velocity(C, dt, j, steepest):
             dilation = ti.max(dilation, 1.0)
         growth = norm_squared(free) / ti.max(norm_squared(S), SMALLEST)
         if growth**3 * dilation**2 > 1.0:
-            after -= (1.0 - dilation ** (-1.0 / 3.0) / ti.sqrt(growth)) * free
+            after -= (1.0 - power(dilation, -1.0 / 3.0) / ti.sqrt(growth)) * free
     return after + 0.5 * (C - C.transpose())

@@ -8,7 +8,7 @@ import taichi.math as tm
 
 from engine.arrays import Scalars
 from engine.device.backend import Real
-from engine.device.fields import per_body
+from engine.device.fields import allocate, overwrite, per_body
 from engine.mpm.spline import REACH
 from engine.scene.material import Material
 
@@ -47,8 +47,8 @@ class GeometricContact:
 
     def __init__(self, materials: Sequence[Material], dx: float, gap: float) -> None:
         self.table = per_body(full=[material.rho0 * dx**3 for material in materials])
-        self.depths, self.gap = ti.field(Real, INTERVALS + 1), ti.field(Real, ())
-        self.depths.from_numpy(depth_of(np.linspace(0.0, 1.0, INTERVALS + 1)))
+        self.depths, self.gap = allocate(Real, INTERVALS + 1), allocate(Real)
+        overwrite(self.depths, depth_of(np.linspace(0.0, 1.0, INTERVALS + 1)))
         self.gap[None] = gap
 
     @ti.func

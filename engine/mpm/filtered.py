@@ -9,7 +9,7 @@ from collections.abc import Callable
 import taichi as ti
 
 from engine.device.backend import Real, mat3, vec3
-from engine.device.fields import capacity
+from engine.device.fields import allocate, capacity
 from engine.device.tensors import moved, norm_squared
 from engine.mpm.affine import affine_velocity
 from engine.mpm.interfaces import Boundary, Exchange, Stage
@@ -46,8 +46,8 @@ class Filtered:
     def __init__(self, response: Response, rate: float, steepest: float, walled: bool) -> None:
         self.response, self.particles, self.clock = response, response.particles, response.clock
         size = capacity(self.particles.count)
-        self.kicked, self.remainder = Motion.field(shape=size), Motion.field(shape=size)
-        self.rate, self.steepest = ti.field(Real, ()), ti.field(Real, ())
+        self.kicked, self.remainder = allocate(Motion, size), allocate(Motion, size)
+        self.rate, self.steepest = allocate(Real), allocate(Real)
         self.rate[None], self.steepest[None] = rate, steepest
         self.walled = walled
 

@@ -7,6 +7,7 @@ one thread works on one block at a time.
 import taichi as ti
 
 from engine.device.backend import TASK, Real, vec3, vec4
+from engine.device.fields import allocate
 from engine.mpm.interfaces import ContactLaw, Exchange
 from engine.mpm.spline import spline_weights
 from engine.mpm.stencil import COPY, TILE, Stencil, node_in_tile
@@ -28,7 +29,7 @@ class GridPass:
 
     def __init__(self, stencil: Stencil, exchange: Exchange, contact: ContactLaw, clock: Clock, cfl: float) -> None:
         self.stencil, self.exchange, self.contact, self.clock = stencil, exchange, contact, clock
-        self.cfl = ti.field(Real, ())
+        self.cfl = allocate(Real)
         self.cfl[None] = cfl
 
     @property

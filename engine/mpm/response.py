@@ -3,6 +3,7 @@
 import taichi as ti
 import taichi.math as tm
 
+from engine.device.fields import allocate
 from engine.device.tensors import norm_squared, unpack
 from engine.gravity.interfaces import GravityField
 from engine.laws.constitution import Constitution
@@ -38,7 +39,7 @@ class Response:
     ) -> None:
         self.particles, self.constitution, self.gravity = particles, constitution, gravity
         self.walls, self.clock = walls, clock
-        self.dx = ti.field(ti.f64, ())
+        self.dx = allocate(ti.f64)
         self.dx[None] = dx
 
     @ti.func

@@ -9,7 +9,7 @@ import taichi as ti
 
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import EPSILON, Real, mat3, on_gpu, vec3, vec4
-from engine.device.fields import capacity, overwrite
+from engine.device.fields import allocate, capacity, overwrite
 from engine.mpm.blocks import Blocks
 from engine.mpm.spline import SECOND_MOMENT, WIDTH, first_moments, spline_weights, sum_of_squares
 from engine.state.particles import Particles
@@ -54,16 +54,16 @@ class Stencil:
 
     def __init__(self, particles: Particles, dx: float, blocks: int) -> None:
         self.particles, self.atomic, self.capacity = particles, on_gpu(), capacity(blocks)
-        self.dx = ti.field(ti.f64, ())
+        self.dx = allocate(ti.f64)
         self.dx[None] = dx
-        self.block_count, self.site_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
-        self.shared_count, self.ballistic_count = ti.field(ti.i32, ()), ti.field(ti.i32, ())
-        self.owner = ti.field(ti.i32, particles.x.shape)
-        self.origin = ti.Vector.field(3, ti.i32, self.capacity)
-        self.first = ti.field(ti.i32, self.capacity + 1)
-        self.source = ti.field(ti.i32, (8 * self.capacity, 8))
-        self.body, self.site = ti.field(ti.i32, 8 * self.capacity), ti.field(ti.i32, 8 * self.capacity + 1)
-        self.nodes = vec4.field(shape=self.capacity * COPY)
+        self.block_count, self.site_count = allocate(ti.i32), allocate(ti.i32)
+        self.shared_count, self.ballistic_count = allocate(ti.i32), allocate(ti.i32)
+        self.owner = allocate(ti.i32, particles.x.shape)
+        self.origin = allocate(ti.types.vector(3, ti.i32), self.capacity)
+        self.first = allocate(ti.i32, self.capacity + 1)
+        self.source = allocate(ti.i32, (8 * self.capacity, 8))
+        self.body, self.site = allocate(ti.i32, 8 * self.capacity), allocate(ti.i32, 8 * self.capacity + 1)
+        self.nodes = allocate(vec4, self.capacity * COPY)
 
     def set_blocks(self, blocks: Blocks) -> None:
         """Store newly built blocks, in whose order the particles lie; there must be room for them."""

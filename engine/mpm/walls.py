@@ -6,6 +6,7 @@ import numpy as np
 import taichi as ti
 
 from engine.device.backend import Real, place3, vec3
+from engine.device.fields import allocate
 from engine.scene.scene import Wall
 
 STICK = -1.0
@@ -22,7 +23,7 @@ class Walls:
 
     def __init__(self, walls: Sequence[Wall]) -> None:
         self.count = len(walls)
-        self.table = ti.types.struct(normal=place3, level=ti.f64, friction=Real).field(shape=self.count)
+        self.table = allocate(ti.types.struct(normal=place3, level=ti.f64, friction=ti.f64), self.count)
         for i, wall in enumerate(walls):
             normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
             self.table.normal[i] = normal
@@ -36,7 +37,7 @@ class Walls:
         for i in range(self.count):
             wall = self.table[i]
             if x.dot(wall.normal) <= wall.level:
-                v = contact(v, ti.cast(wall.normal, Real), wall.friction)
+                v = contact(v, ti.cast(wall.normal, Real), ti.cast(wall.friction, Real))
         return v
 
 

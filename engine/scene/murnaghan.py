@@ -1,6 +1,7 @@
 """Murnaghan's equation of state (1944, PNAS 30, 244; engine/physics.md, section 2)."""
 
 import math
+from operator import pow as power
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -21,7 +22,7 @@ class MurnaghanParameters(AlgebraicEquationOfState):
     def formula(m: Any, mu: Any, E: Any) -> tuple[Any, Any]:
         """Pressure (K/n) (eta^n - 1) [Pa] and c^2 = K eta^(n-1)/rho0 [m^2/s^2]; arguments as in the base class."""
         eta = 1.0 + mu
-        return m.K / m.n * (eta**m.n - 1.0), m.K * eta ** (m.n - 1.0) / m.rho0
+        return m.K / m.n * (power(eta, m.n) - 1.0), m.K * power(eta, m.n - 1.0) / m.rho0
 
     def bulk_modulus(self) -> float:
         """Bulk modulus K [Pa]."""
@@ -46,5 +47,5 @@ class MurnaghanParameters(AlgebraicEquationOfState):
 
     def _work(self, rho0: float, log_eta: Any) -> Any:
         """Cold energy [J/kg] from ln eta, which keeps the digits of small compressions."""
-        power = self.n - 1.0
-        return self.K / (self.n * rho0) * (np.expm1(power * log_eta) / power + np.expm1(-log_eta))
+        exponent = self.n - 1.0
+        return self.K / (self.n * rho0) * (np.expm1(exponent * log_eta) / exponent + np.expm1(-log_eta))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import taichi as ti
 
 from engine.device.backend import Real
+from engine.device.fields import allocate
 
 FAULT_NONE = 0
 FAULT_INVERTED = 1
@@ -47,10 +48,10 @@ class Clock:
     """
 
     def __init__(self, start: float, end: float, longest_step: float) -> None:
-        self.time, self.end, self.pause_time, self.contact_time = (ti.field(ti.f64, ()) for _ in range(4))
-        self.dt, self.kick, self.rate, self.least_rate = (ti.field(Real, ()) for _ in range(4))
-        self.step, self.running, self.moved_out = (ti.field(ti.i32, ()) for _ in range(3))
-        self.fault, self.fault_particle = ti.field(ti.i32, ()), ti.field(ti.i32, ())
+        self.time, self.end, self.pause_time, self.contact_time = (allocate(ti.f64) for _ in range(4))
+        self.dt, self.kick, self.rate, self.least_rate = (allocate(Real) for _ in range(4))
+        self.step, self.running, self.moved_out = (allocate(ti.i32) for _ in range(3))
+        self.fault, self.fault_particle = allocate(ti.i32), allocate(ti.i32)
         self.time[None], self.end[None], self.pause_time[None] = start, end, start
         self.contact_time[None] = math.inf
         self.least_rate[None] = 1.0 / longest_step

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from engine.arrays import Indices
 from engine.device.backend import Real, mat3, place3, vec3, vec6
-from engine.device.fields import capacity, overwrite
+from engine.device.fields import allocate, capacity, overwrite
 
 Arrays = dict[str, NDArray[Any]]
 """Fields of every particle by name, shape [particle_count, ...]: integers for `body` and `origin`, else doubles."""
@@ -82,7 +82,7 @@ class Particles:
 
     def __init__(self, count: int) -> None:
         self.count = count
-        self.index = ti.field(ti.i32, capacity(count))
+        self.index = allocate(ti.i32, capacity(count))
         self._number(np.arange(count, dtype=np.int32))
         for name in CORE_FIELDS:
             self.require(name)
@@ -90,8 +90,7 @@ class Particles:
     def require(self, name: str) -> ti.Field:
         """Return the field of a quantity, allocated when it is first asked for."""
         if name not in self.allocated:
-            kind, shape = FIELD_TYPES[name], capacity(self.count)
-            setattr(self, name, kind.field(shape=shape) if hasattr(kind, "field") else ti.field(kind, shape))
+            setattr(self, name, allocate(FIELD_TYPES[name], capacity(self.count)))
         return getattr(self, name)
 
     @property
