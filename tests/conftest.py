@@ -1,5 +1,6 @@
 """Shared by all tests."""
 
+import os
 from collections.abc import Iterator
 
 import pytest
@@ -12,8 +13,8 @@ settings.load_profile("untimed")
 
 @pytest.fixture
 def taichi() -> Iterator[None]:
-    """A freshly started Taichi on one thread; fields of earlier tests are gone."""
+    """A freshly started Taichi, on one thread or the device that TEST_ARCH names; fields of earlier tests are gone."""
     from engine.device import backend
 
-    backend.start(threads=1)
+    backend.start(os.environ.get("TEST_ARCH", "cpu"), threads=1)
     yield

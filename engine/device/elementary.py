@@ -70,6 +70,25 @@ def log(x):
 
 
 @ti.func
+def log1p(x):
+    """Return ln(1 + x), for small x by the series of artanh(x/(2 + x))."""
+    s = x / (2.0 + x)
+    result = 2.0 * s + s * s * s * polynomial(s * s, LOGARITHM)
+    if ti.abs(x) > 0.3:
+        result = log(1.0 + x)
+    return result
+
+
+@ti.func
+def expm1(x):
+    """Return e^x - 1, for small x by its series."""
+    result = x + x * x * polynomial(x, EXPONENTIAL)
+    if ti.abs(x) > 0.5:
+        result = exp(x) - 1.0
+    return result
+
+
+@ti.func
 def cbrt(x):
     """Return the cube root of x."""
     y = power(x, 1.0 / 3.0)

@@ -9,7 +9,7 @@ import taichi as ti
 import taichi.math as tm
 
 from engine.device.backend import mat3, vec3, vec6
-from engine.device.elementary import acos, cos, exp, log
+from engine.device.elementary import acos, cos, expm1, log1p
 
 SERIES_LIMIT = 0.05
 """Frobenius norm up to which the series below reach round-off; larger tensors go through their eigenvectors."""
@@ -135,28 +135,6 @@ def _expm1_series(S):
         power = vec3(power[1], power[2] + second * power[0], third * power[0])
         total += ti.static(INVERSE_FACTORIAL[n]) * power
     return total[0] * square + total[1] * S + total[2] * identity()
-
-
-@ti.func
-def log1p(x):
-    """Return log(1 + x), without cancellation for small x (Goldberg 1991, theorem 4)."""
-    y = 1.0 + x
-    result = x
-    if y != 1.0:
-        result = x * log(y) / (y - 1.0)
-    return result
-
-
-@ti.func
-def expm1(x):
-    """Return exp(x) - 1, without cancellation for small x (Higham 2002, section 1.14.1)."""
-    y = exp(x)
-    result = x
-    if y != 1.0 and ti.abs(x) < 1.0:
-        result = (y - 1.0) * x / log(y)
-    elif y != 1.0:
-        result = y - 1.0
-    return result
 
 
 @ti.func

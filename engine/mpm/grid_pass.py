@@ -1,7 +1,8 @@
 """One pass over the grid: particles give to their nodes, nodes sum, particles take (engine/physics.md, section 1).
 
 One loop over the tiles sums the copies of every node in a fixed order and writes the mean back into each. On the CPU
-one thread works on one block at a time.
+one thread works on one block at a time, on a GPU on one node or one particle: no number is added to by two threads, so
+the same run has the same bits.
 """
 
 import taichi as ti
@@ -9,7 +10,7 @@ import taichi as ti
 from engine.device.backend import TASK, Real, vec3, vec4
 from engine.device.fields import allocate
 from engine.mpm.interfaces import ContactLaw, Exchange
-from engine.mpm.spline import spline_weights
+from engine.mpm.spline import WIDTH, spline_weight, spline_weights
 from engine.mpm.stencil import COPY, TILE, Stencil, node_in_tile
 from engine.mpm.time_step import no_limits, rate_of, tightest
 from engine.state.clock import Clock
@@ -47,15 +48,13 @@ class GridPass:
     def particles_to_grid(self):
         """Add to the nodes what every particle gives (p2g)."""
         blocks = self.stencil.block_count[None] * self.clock.running[None]
-        if ti.static(not self.stencil.atomic):
+        if ti.static(self.stencil.by_node):
+            for n in range(blocks * COPY):
+                self.stencil.nodes[n] = self.given_to(n)
+        else:
             for t in range(blocks * TASK):
                 if t & (TASK - 1) == 0:
                     self.scatter_block(t // TASK)
-        else:
-            for n in range(blocks * COPY):
-                self.stencil.nodes[n] = vec4(0.0)
-            for p in range(self.stencil.shared_count[None] * self.clock.running[None]):
-                self.scatter(p, self.stencil.owner[p])
 
     @ti.kernel
     def update_grid(self):
@@ -106,13 +105,13 @@ class GridPass:
     @ti.kernel
     def grid_to_particles(self):
         """Let every particle take from its nodes (g2p)."""
-        if ti.static(not self.stencil.atomic):
+        if ti.static(self.stencil.by_node):
+            for p in range(self.stencil.shared_count[None] * self.clock.running[None]):
+                self.report(self.gather(p, self.stencil.owner[p]))
+        else:
             for t in range(self.stencil.block_count[None] * self.clock.running[None] * TASK):
                 if t & (TASK - 1) == 0:
                     self.report(self.gather_block(t // TASK))
-        else:
-            for p in range(self.stencil.shared_count[None] * self.clock.running[None]):
-                self.report(self.gather(p, self.stencil.owner[p]))
         for k in range(self.stencil.ballistic_count[None] * self.clock.running[None]):
             self.report(self.exchange.take_alone(self.stencil.shared_count[None] + k, self.dx()))
 
@@ -131,6 +130,18 @@ class GridPass:
         for p in range(self.stencil.first[b], self.stencil.first[b + 1]):
             limits = tightest(limits, self.gather(p, b))
         return limits
+
+    @ti.func
+    def given_to(self, n):
+        """Return the sum of what the particles of its block give to node n: momentum [kg m/s] and mass [kg]."""
+        total = vec4(0.0)
+        for p in range(self.stencil.first[n // COPY], self.stencil.first[n // COPY + 1]):
+            above, distance = self.stencil.seen_from(p, n)
+            if above.min() >= 0 and above.max() < WIDTH:
+                mass, momentum, affine = self.exchange.give(p, self.dx())
+                w = spline_weight(distance)
+                total += w[0] * w[1] * w[2] * vec4(momentum + affine @ distance, mass)
+        return total
 
     @ti.func
     def scatter(self, p, b):

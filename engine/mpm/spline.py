@@ -25,6 +25,18 @@ def spline_weights(f):
 
 
 @ti.func
+def spline_weight(distance):
+    """Return the weight of a node at a distance [cells] along every axis, none of them beyond REACH; shape [3]."""
+    x = ti.abs(distance)
+    inner, outer = 0.75 - x * x, 0.5 * (REACH - x) ** 2
+    result = outer
+    for axis in ti.static(range(3)):
+        if x[axis] < 0.5:
+            result[axis] = inner[axis]
+    return result
+
+
+@ti.func
 def first_moments(weights, f):
     """Return the weights along an axis times the distance of their nodes from the particle, in cells."""
     return vec3(-f * weights[0], (1.0 - f) * weights[1], (2.0 - f) * weights[2])

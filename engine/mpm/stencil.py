@@ -1,7 +1,7 @@
 """The nodes of every particle: where they lie in memory, their weights, and the sums over them.
 
 Each block of particles has its own copy of the nodes that it reaches (engine/mpm/blocks.py), so on the CPU no two
-threads ever add to the same number, and results do not depend on their count.
+threads ever add to the same number, and on a GPU every node is summed by one: results do not depend on their count.
 """
 
 import numpy as np
@@ -45,7 +45,7 @@ class Stencil:
         blocks: number of blocks to make room for.
 
     Attributes:
-        atomic: whether several threads add to one node at once, one particle each, as on a GPU.
+        by_node: whether a thread sums one node over the particles of its block, as on a GPU, or all nodes of a block.
         nodes: every node of every copy; momentum [kg m/s] and mass [kg] after the scatter, velocity [m/s] and mass
             after the grid update.
         shared_count: particles whose block, or one beside it, contains others; they come first in memory.
@@ -53,7 +53,7 @@ class Stencil:
     """
 
     def __init__(self, particles: Particles, dx: float, blocks: int) -> None:
-        self.particles, self.atomic, self.capacity = particles, on_gpu(), capacity(blocks)
+        self.particles, self.by_node, self.capacity = particles, on_gpu(), capacity(blocks)
         self.dx = allocate(ti.f64)
         self.dx[None] = dx
         self.block_count, self.site_count = allocate(ti.i32), allocate(ti.i32)
@@ -88,13 +88,19 @@ class Stencil:
     @ti.func
     def locate(self, p, b):
         """Return the index of the lowest node of particle p in the copy of block b, and its distance in cells."""
+        local, f = self.place(p, b)
+        return b * COPY + in_copy(local), f
+
+    @ti.func
+    def place(self, p, b):
+        """Return the coordinates of the lowest node of particle p in the copy of block b, and its distance in cells."""
         base = self.lowest_node(p)
         first = BLOCK_EDGE * self.origin[b] - MARGIN
         # a particle faster than any time step allows stays within the copy: its weights still sum to one
         local = ti.min(ti.max(base - first, 0), SPAN - WIDTH)
         base = first + local
         f = ti.cast(self.particles.x[p] / self.dx[None] - ti.cast(base, ti.f64), Real)
-        return b * COPY + in_copy(local), f
+        return local, f
 
     @ti.func
     def scatter(self, n, f, mass, momentum, affine):
@@ -118,15 +124,18 @@ class Stencil:
                 row = weight * (lowest + i * by_x + j * by_y)
                 row_by_z = weight * by_z
                 for k in ti.static(range(WIDTH)):
-                    self.add(n + (i * SPAN + j) * SPAN + k, w[2, k] * (row + k * row_by_z))
+                    m = n + (i * SPAN + j) * SPAN + k
+                    self.nodes[m] = self.nodes[m] + w[2, k] * (row + k * row_by_z)  # += would be atomic
 
     @ti.func
-    def add(self, n, value):
-        """Add a value to node n."""
-        if ti.static(self.atomic):
-            ti.atomic_add(self.nodes[n], value)
-        else:
-            self.nodes[n] = self.nodes[n] + value
+    def seen_from(self, p, n):
+        """Return the coordinates of node n above the lowest node of particle p, both of one block, and from p [cells].
+
+        The particle gives to the node if all of the first are from 0 to WIDTH - 1.
+        """
+        local, f = self.place(p, n // COPY)
+        above = in_copy_coordinates(n % COPY) - local
+        return above, ti.cast(above, Real) - f
 
     @ti.func
     def gather(self, n, f, w):
@@ -233,6 +242,12 @@ def node_in_tile(n):
     return ti.Vector(
         [(n >> (2 * EDGE_BITS)) & (BLOCK_EDGE - 1), (n >> EDGE_BITS) & (BLOCK_EDGE - 1), n & (BLOCK_EDGE - 1)]
     )
+
+
+@ti.func
+def in_copy_coordinates(n):
+    """Return the coordinates of node n of a block's copy within it."""
+    return ti.Vector([n // (SPAN * SPAN), n // SPAN % SPAN, n % SPAN])
 
 
 @ti.func

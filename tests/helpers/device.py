@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from engine.device.backend import Real, mat3, vec3, vec6
+from engine.device.fields import allocate, capacity, overwrite
 
 Array = NDArray[Any]
 Shape = tuple[int, ...]
@@ -17,9 +18,7 @@ Shape = tuple[int, ...]
 
 def field(shape: Shape, count: int, dtype: Any = Real) -> Any:
     """A field of `count` scalars, vectors or matrices."""
-    if shape == ():
-        return ti.field(dtype, count)
-    return {(3,): vec3, (6,): vec6, (3, 3): mat3}[shape].field(shape=count)
+    return allocate({(): dtype, (3,): vec3, (6,): vec6, (3, 3): mat3}[shape], capacity(count))
 
 
 def evaluate(function: Callable[..., Any], *inputs: Array, outputs: tuple[Shape, ...] = ((),)) -> list[Array]:
@@ -27,7 +26,7 @@ def evaluate(function: Callable[..., Any], *inputs: Array, outputs: tuple[Shape,
     count = len(inputs[0])
     given = [field(values.shape[1:], count, ti.i32 if values.dtype == np.int32 else Real) for values in inputs]
     for entries, values in zip(given, inputs, strict=True):
-        entries.from_numpy(values)
+        overwrite(entries, values)
     results = [field(shape, count) for shape in outputs]
 
     @ti.kernel
@@ -41,7 +40,7 @@ def evaluate(function: Callable[..., Any], *inputs: Array, outputs: tuple[Shape,
                     results[k][i] = result[k]
 
     run()
-    return [result.to_numpy() for result in results]
+    return [result.to_numpy()[:count] for result in results]
 
 
 def rotations(generator: np.random.Generator, count: int) -> Array:
