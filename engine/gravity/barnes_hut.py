@@ -18,8 +18,9 @@ BATCH = 64
 class BarnesHut(Multipoles):
     """Tree walk: each group of targets accepts a node's multipole if the opening criterion holds, else opens the node.
 
-    On the CPU the particles of a leaf walk together, and accepted nodes are collected: so the sums of a row of targets
-    stay in registers. On a GPU every particle walks alone. Arguments as `Multipoles`.
+    The particles of a leaf accept the same nodes. On the CPU one thread walks for all of them and collects what it
+    accepts: so the sums of a row of targets stay in registers. On a GPU every particle has a thread, and those of a leaf
+    take the same path. Arguments as `Multipoles`.
     """
 
     def __init__(self, particles: Particles, radius: float, opening: float) -> None:
@@ -45,7 +46,8 @@ class BarnesHut(Multipoles):
                     self.walk(leaf * room, room // self.lanes, lower, upper, leaves, size, room, potential)
         else:
             for p in range(leaves * room):
-                self.walk(p, 1, self.point(p), self.point(p), leaves, size, room, potential)
+                lower, upper = self.lower[leaves + p // room], self.upper[leaves + p // room]
+                self.walk(p, 1, lower, upper, leaves, size, room, potential)
 
     @ti.func
     def walk(self, first, rows, lower, upper, leaves, size, room, potential: ti.template()):
