@@ -1,8 +1,9 @@
 """Elementary functions in the precision of this process, also where the device has none in double precision.
 
 Kernels for Vulkan have those of the device in single precision only. In double precision the functions below then use
-arithmetic, square roots and the bits of a number: they err by 2 units in the last place at most, `power(x, y)` by
-|y ln x| more. Arguments are finite; `log`, `cbrt` and `power` take normal positive ones, `sin` and `cos` |x| < 1e5.
+arithmetic, square roots and the bits of a number: they err by 2 units in the last place at most, `log1p` and `expm1` by
+4, and `power(x, y)` by 2^-52 (2 + |y ln x|) of its value. Arguments are finite; `log`, `cbrt` and `power` take normal
+positive ones, `sin` and `cos` |x| < 1e5.
 """
 
 import math

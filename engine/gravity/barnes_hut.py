@@ -19,8 +19,8 @@ class BarnesHut(Multipoles):
     """Tree walk: each group of targets accepts a node's multipole if the opening criterion holds, else opens the node.
 
     The particles of a leaf accept the same nodes. On the CPU one thread walks for all of them and collects what it
-    accepts: so the sums of a row of targets stay in registers. On a GPU every particle has a thread, and those of a leaf
-    take the same path. Arguments as `Multipoles`.
+    accepts: so the sums of a row of targets stay in registers. On a GPU every particle has a thread, and those of a
+    leaf take the same path. Arguments as `Multipoles`.
     """
 
     def __init__(self, particles: Particles, radius: float, opening: float) -> None:

@@ -1,0 +1,119 @@
+"""Tests on a Vulkan device, which tests/engine/device/test_gpu.py runs in processes of their own."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from engine.device import backend, elementary
+from engine.device.backend import PRECISION
+from engine.scene.collision import Collision
+from engine.scene.scene import Scene
+from engine.simulation.simulation import Simulation
+from engine.state.particles import Arrays
+from tests.helpers.device import Array, evaluate
+from tests.helpers.scenes import advance, rubble_collision, started
+
+DOUBLE = PRECISION == "f64"
+STEPS = 30
+"""Past contact and the first flow of rubble."""
+
+ROUND_OFF = 1e-12 if DOUBLE else 1e-3
+"""Of these steps, relative to the largest value."""
+
+SETTINGS = {"numerics": {"precision": PRECISION}}
+
+
+@pytest.fixture
+def device() -> Iterator[None]:
+    backend.start("vulkan")
+    yield
+
+
+def collision() -> Scene:
+    """Two bodies about to touch: flaws, damage, contact, friction by Lode angle, self-gravity, both terms of tau."""
+    given = {"velocity": 200.0, "angle": 15.0, "particles": 100, "start_separation": 1.05, "end_time": 300.0}
+    return Collision.model_validate({**given, "parameter_set": "rubble", **SETTINGS}).scene()
+
+
+def state(simulation: Simulation) -> Arrays:
+    return simulation.particles.read(*simulation.particles.allocated)
+
+
+def test_it_runs_on_the_device(device: None) -> None:
+    assert backend.on_gpu()
+
+
+GENERATOR = np.random.default_rng(7)
+FUNCTIONS = {
+    "exp": (np.exp, GENERATOR.uniform(-700.0, 700.0, 4096)),
+    "expm1": (np.expm1, GENERATOR.uniform(-5.0, 5.0, 4096)),
+    "log": (np.log, 10.0 ** GENERATOR.uniform(-300.0, 300.0, 4096)),
+    "log1p": (np.log1p, GENERATOR.uniform(-0.9, 9.0, 4096)),
+    "cbrt": (np.cbrt, 10.0 ** GENERATOR.uniform(-100.0, 100.0, 4096)),
+    "sin": (np.sin, GENERATOR.uniform(-100.0, 100.0, 4096)),
+    "cos": (np.cos, GENERATOR.uniform(-100.0, 100.0, 4096)),
+    "asin": (np.arcsin, np.linspace(-1.0, 1.0, 4097)),
+    "acos": (np.arccos, np.linspace(-1.0, 1.0, 4097)),
+}
+
+
+def place(values: Array) -> Array:
+    """Unit in the last place; a device in software may have set this process to read subnormal numbers as zero."""
+    return np.maximum(np.spacing(np.abs(values)), np.finfo(float).tiny)
+
+
+@pytest.mark.skipif(not DOUBLE, reason="in single precision they are the device's own")
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_elementary_functions_err_in_the_last_places(device: None, name: str) -> None:
+    exact, x = FUNCTIONS[name]
+    (found,) = evaluate(getattr(elementary, name), x)
+    assert (np.abs(found - exact(x)) / place(exact(x))).max() <= (4.0 if name in ("expm1", "log1p") else 2.0)
+
+
+@pytest.mark.skipif(not DOUBLE, reason="in single precision they are the device's own")
+def test_powers_err_by_as_many_places_as_the_logarithm_is_long(device: None) -> None:
+    x, y = np.geomspace(1e-3, 1e3, 4096), np.linspace(-3.0, 3.0, 4096)
+    (found,) = evaluate(elementary.power, x, y)
+    assert (np.abs(found / x**y - 1.0) <= (2.0 + np.abs(y * np.log(x))) * np.finfo(float).eps).all()
+
+
+def test_a_collision_is_that_of_the_cpu() -> None:
+    """Laws, transfer, contact, tree, sorting into blocks, and the ledger."""
+    found = []
+    for arch in ("cpu", "vulkan"):
+        backend.start(arch, threads=1)
+        simulation = advance(started(collision()), STEPS)
+        found.append((simulation.step, simulation.time, state(simulation), simulation.totals()))
+    (step, time, cpu, ledger), (other_step, other_time, gpu, other_ledger) = found
+    assert step == other_step and time == pytest.approx(other_time, rel=ROUND_OFF)
+    assert cpu["plastic_heat"].max() > 0.0, "rubble flows"
+    for name, values in cpu.items():
+        assert np.abs(gpu[name] - values).max() <= ROUND_OFF * np.abs(values).max(), name
+    assert other_ledger.total_energy == pytest.approx(ledger.total_energy, rel=ROUND_OFF)
+
+
+def test_the_same_run_has_the_same_bits_and_so_has_a_restart(device: None) -> None:
+    """However many steps are launched at once."""
+    first, second = advance(started(collision()), STEPS), started(collision())
+    while second.step < first.step:
+        second.advance(second.scene.end_time, steps=min(7, first.step - second.step))
+        if second.step < STEPS // 2:
+            kept, clock = state(second), second.clock_state()
+    third = Simulation(collision())
+    third.restore(kept, clock)
+    while third.step < first.step:
+        third.advance(third.scene.end_time, steps=first.step - third.step)
+    for other in (second, third):
+        assert all(np.array_equal(values, state(other)[name]) for name, values in state(first).items())
+
+
+def test_momentum_and_angular_momentum_are_kept_to_round_off(device: None) -> None:
+    simulation = started(rubble_collision(**SETTINGS))
+    before, given = simulation.totals(), simulation.particles.read("x", "v", "mass")
+    momentum = given["mass"] * np.linalg.norm(given["v"], axis=1)
+    arm = np.linalg.norm(given["x"], axis=1)
+    after = advance(simulation, STEPS).totals()
+    allowed = 1e-13 if DOUBLE else 1e-5
+    assert np.abs(after.momentum - before.momentum).max() < allowed * momentum.sum()
+    assert np.abs(after.angular_momentum - before.angular_momentum).max() < allowed * (momentum * arm).sum()
