@@ -11,6 +11,7 @@ from rich.console import Console
 
 from campaigns.campaign import Campaign
 from campaigns.cluster import Resources, connect, share_cores
+from campaigns.devices import visible
 from campaigns.directory import CampaignDirectory
 from campaigns.expansion import expand
 from campaigns.job_state import TrackedJob, decide, states
@@ -38,6 +39,7 @@ Threads = Annotated[
 Scheduler = Annotated[str | None, typer.Option(help="Address of a running dask scheduler that sees the same files.")]
 Slurm = Annotated[bool, typer.Option("--slurm", help="Run jobs through SLURM, as set up for dask-jobqueue.")]
 Device = Annotated[Arch, typer.Option(help="Where the engine computes.")]
+JobsPerGpu = Annotated[int | None, typer.Option(min=1, help="Jobs at the same time on one GPU [default: 1].")]
 RetryFailed = Annotated[bool, typer.Option("--retry-failed", help="Run failed jobs once more.")]
 
 DEFAULT_RUNS = Path("runs")
@@ -66,6 +68,7 @@ def run(
     scheduler: Scheduler = None,
     slurm: Slurm = False,
     arch: Device = Arch.CPU,
+    jobs_per_gpu: JobsPerGpu = None,
     retry_failed: RetryFailed = False,
 ) -> None:
     """Run every unfinished job of a study."""
@@ -75,15 +78,27 @@ def run(
         if context.info_name == "resume":
             directory.read()
         waiting = sum(decide(job.status, retry_failed).runs for job in states(directory, campaign))
-        slots, threads = share_cores(waiting, workers, threads_per_job)
-        with connect(Resources(slots, threads, scheduler, slurm)) as client, display(Console()) as show:
+        gpus, jobs_on_gpu = _gpus(arch, jobs_per_gpu)
+        slots, threads = share_cores(waiting, workers or gpus * jobs_on_gpu or None, threads_per_job)
+        resources = Resources(slots, threads, gpus, scheduler, slurm)
+        share = 1.0 / jobs_on_gpu if gpus else 0.0
+        with connect(resources) as client, display(Console()) as show:
             directory.write(campaign)
-            jobs = CampaignRun(directory, campaign, client, threads, arch, retry_failed).watch(show)
+            jobs = CampaignRun(directory, campaign, client, threads, arch, share, retry_failed).watch(show)
         _finish(directory, jobs, _arguments(study, runs))
     except KeyboardInterrupt:
         raise typer.Exit(
             _complain(f"stopped; go on with: make resume {_arguments(study, runs)}", ExitCode.INTERRUPTED)
         ) from None
+
+
+def _gpus(arch: Arch, jobs_per_gpu: int | None) -> tuple[int, int]:
+    """GPUs of this machine for jobs of a campaign, 0 on the CPU, and jobs on each."""
+    if arch != Arch.CPU:
+        return len(visible(arch)[1]), jobs_per_gpu or 1
+    if jobs_per_gpu:
+        raise SceneError("--jobs-per-gpu: jobs run on the CPU; add --arch gpu, or use --workers")
+    return 0, 1
 
 
 @app.command()

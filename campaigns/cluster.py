@@ -10,6 +10,7 @@ import dask
 from dask.distributed import Client, LocalCluster, SpecCluster
 from dask.system import CPU_COUNT
 
+from campaigns.devices import RESOURCE
 from campaigns.worker import Worker
 from engine.errors import SceneError
 
@@ -24,12 +25,14 @@ class Resources:
     Attributes:
         workers: jobs at the same time.
         threads: CPU threads of one job.
+        gpus: of this machine; 0 for jobs on the CPU.
         scheduler: address of a running dask scheduler; `None` starts a cluster of our own.
         slurm: let that cluster submit its workers to SLURM.
     """
 
     workers: int
     threads: int
+    gpus: int = 0
     scheduler: str | None = None
     slurm: bool = False
 
@@ -77,6 +80,7 @@ def _local(resources: Resources) -> LocalCluster:
             threads_per_worker=resources.workers,
             processes=False,
             memory_limit=0,
+            resources={RESOURCE: resources.gpus},
             dashboard_address="127.0.0.1:0",  # any port, so that two campaigns do not warn of each other
             silence_logs=logging.ERROR,
         )
@@ -96,7 +100,8 @@ def _slurm(resources: Resources) -> SpecCluster:
     """Workers as SLURM jobs with one job of ours at a time; memory, queue and walltime are dask-jobqueue's settings."""
     try:
         jobqueue = import_module("dask_jobqueue")
-        cluster = jobqueue.SLURMCluster(cores=1, processes=1, job_cpu=resources.threads)
+        gpus = ["--resources", f"{RESOURCE}=1"] if resources.gpus else []
+        cluster = jobqueue.SLURMCluster(cores=1, processes=1, job_cpu=resources.threads, worker_extra_args=gpus)
     except ImportError as error:
         raise SceneError("--slurm: needs dask-jobqueue; install it with: pip install -e '.[slurm]'") from error
     except ValueError as error:

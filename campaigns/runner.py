@@ -9,10 +9,12 @@ from pathlib import Path
 from dask.distributed import Client, Future
 
 from campaigns.campaign import Campaign
+from campaigns.devices import RESOURCE
 from campaigns.directory import CampaignDirectory
 from campaigns.job_state import TrackedJob, decide, states
 from campaigns.progress import Show
 from campaigns.worker import EngineExit, run_job, signal_jobs
+from engine.device.options import Arch
 from engine.errors import ExitCode
 from engine.job.directory import JobState
 
@@ -32,7 +34,8 @@ class CampaignRun:
         directory, campaign: what is run.
         client: of the cluster that runs it.
         threads: CPU threads of one job.
-        arch: Taichi architecture.
+        arch: where the engine computes.
+        gpu_share: part of a GPU that a job takes; 0 on the CPU.
         retry_failed: run failed jobs once more.
     """
 
@@ -40,7 +43,8 @@ class CampaignRun:
     campaign: Campaign
     client: Client
     threads: int
-    arch: str
+    arch: Arch
+    gpu_share: float
     retry_failed: bool
     _futures: dict[Path, Future] = field(default_factory=dict)
     _outcomes: dict[Path, EngineExit] = field(default_factory=dict)
@@ -75,8 +79,9 @@ class CampaignRun:
     def _submit(self, job: TrackedJob) -> None:
         untried = job.directory not in self._futures and job.directory not in self._outcomes
         if untried and decide(job.status, self.retry_failed).runs:
+            needed = {RESOURCE: self.gpu_share} if self.gpu_share else None
             self._futures[job.directory] = self.client.submit(
-                run_job, job.directory, self.threads, self.arch, self.retry_failed, pure=False
+                run_job, job.directory, self.threads, self.arch, self.retry_failed, pure=False, resources=needed
             )
 
     def _gather(self) -> None:

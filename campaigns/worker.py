@@ -12,8 +12,10 @@ from typing import IO, Protocol
 
 from dask.distributed import WorkerPlugin, get_worker
 
+from campaigns.devices import one_device
 from campaigns.job_state import decide, status_of
 from campaigns.parent_death import tethered
+from engine.device.options import Arch
 from engine.errors import ExitCode
 
 ENGINE = (sys.executable, "-m", "engine")
@@ -45,12 +47,16 @@ class Worker(WorkerPlugin):  # type: ignore[misc]  # dask has no types
         self._running: dict[subprocess.Popen[bytes], Path] = {}
         self._signalled: set[tuple[subprocess.Popen[bytes], int]] = set()
 
-    def run(self, directory: Path, threads: int, arch: str, retry_failed: bool) -> EngineExit:
+    def run(self, directory: Path, threads: int, arch: Arch, retry_failed: bool) -> EngineExit:
         """Run the engine on a job, unless nothing is left to do there; arguments as `run_job`."""
         if not decide(status_of(directory), retry_failed).runs:
             return EngineExit(ExitCode.BUSY)
         command = [*ENGINE, "run", str(directory), "--threads", str(threads), "--arch", arch]
-        with tempfile.TemporaryFile() as errors, self._started(directory, command, errors) as process:
+        with (
+            tempfile.TemporaryFile() as errors,
+            one_device(arch) as environment,
+            self._started(directory, command, errors, environment) as process,
+        ):
             code = process.wait()
             return EngineExit(code, _reason(code, errors))
 
@@ -68,10 +74,17 @@ class Worker(WorkerPlugin):  # type: ignore[misc]  # dask has no types
         return len(alive)
 
     @contextmanager
-    def _started(self, directory: Path, command: list[str], errors: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
+    def _started(
+        self, directory: Path, command: list[str], errors: IO[bytes], environment: dict[str, str]
+    ) -> Iterator[subprocess.Popen[bytes]]:
         """The running command, in a process group of its own so that Ctrl-C reaches only the campaign."""
         process = subprocess.Popen(
-            tethered(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, process_group=0
+            tethered(command),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=errors,
+            env=environment,
+            process_group=0,
         )
         self._running[process] = directory
         try:
@@ -90,13 +103,13 @@ class DaskWorker(Protocol):
     plugins: dict[str, Worker]
 
 
-def run_job(directory: Path, threads: int, arch: str, retry_failed: bool) -> EngineExit:
+def run_job(directory: Path, threads: int, arch: Arch, retry_failed: bool) -> EngineExit:
     """Run the engine on a job; a task of the worker that executes it.
 
     Args:
         directory: the job directory.
         threads: CPU threads of the engine.
-        arch: Taichi architecture, `cpu` or `cuda`.
+        arch: where the engine computes.
         retry_failed: run the job although it failed before.
     """
     worker: DaskWorker = get_worker()

@@ -15,6 +15,7 @@ from campaigns.directory import CampaignDirectory
 from campaigns.expansion import expand
 from campaigns.runner import CampaignRun
 from campaigns.study import Study
+from engine.device.options import Arch
 
 Tree = Callable[[Path], dict[str, bytes]]
 
@@ -291,7 +292,9 @@ def test_a_stopped_campaign_ends_also_an_engine_that_a_worker_begins_late(runs):
     def ctrl_c(jobs: Any) -> None:
         raise KeyboardInterrupt
 
-    run = CampaignRun(CampaignDirectory(runs / "small"), campaign, client, threads=1, arch="cpu", retry_failed=False)
+    run = CampaignRun(
+        CampaignDirectory(runs / "small"), campaign, client, threads=1, arch=Arch.CPU, gpu_share=0.0, retry_failed=False
+    )
     with pytest.raises(KeyboardInterrupt):
         run.watch(ctrl_c)
     assert not client.alive, "watched until no engine was left, the late one included"

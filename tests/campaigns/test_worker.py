@@ -10,6 +10,7 @@ import pytest
 
 import campaigns.worker
 from campaigns.worker import EngineExit, Worker
+from engine.device.options import Arch
 from engine.errors import ExitCode
 from engine.job.directory import JobDirectory, JobState, Status
 
@@ -46,7 +47,7 @@ def job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_each_signal_reaches_an_engine_once(job: Path) -> None:
     worker = Worker()
     with ThreadPoolExecutor(1) as pool:
-        ended = pool.submit(worker.run, job, 1, "cpu", False)
+        ended = pool.submit(worker.run, job, 1, Arch.CPU, False)
         wait_for(job / "ready")
         assert worker.signal([job.parent / "another"], signal.SIGTERM) == 0
         assert worker.signal([job], signal.SIGTERM) == 1
@@ -62,9 +63,9 @@ def test_each_signal_reaches_an_engine_once(job: Path) -> None:
 def test_an_engine_stays_known_when_a_second_one_finds_its_job_busy(job: Path) -> None:
     worker = Worker()
     with ThreadPoolExecutor(1) as pool:
-        first = pool.submit(worker.run, job, 1, "cpu", False)
+        first = pool.submit(worker.run, job, 1, Arch.CPU, False)
         wait_for(job / "ready")
-        assert worker.run(job, 1, "cpu", False).code == ExitCode.BUSY
+        assert worker.run(job, 1, Arch.CPU, False).code == ExitCode.BUSY
         assert worker.signal([job], signal.SIGTERM) == 1
         (job / "end").touch()
         assert first.result(timeout=20) == EngineExit(5, "last line")
@@ -72,5 +73,5 @@ def test_an_engine_stays_known_when_a_second_one_finds_its_job_busy(job: Path) -
 
 def test_a_job_that_another_process_runs_is_left_to_it(tmp_path: Path) -> None:
     JobDirectory(tmp_path).write_status(Status(state=JobState.RUNNING))
-    assert Worker().run(tmp_path, 1, "cpu", False) == EngineExit(ExitCode.BUSY)
+    assert Worker().run(tmp_path, 1, Arch.CPU, False) == EngineExit(ExitCode.BUSY)
     assert [path.name for path in tmp_path.iterdir()] == ["status.json"]

@@ -32,9 +32,10 @@ def run_engine(directory: Path, *options: str) -> subprocess.CompletedProcess[st
     return subprocess.run(engine_command(directory, *options), capture_output=True, text=True, timeout=300, check=False)
 
 
-def start_and_stop(directory: Path, number: signal.Signals) -> int:
+def start_and_stop(directory: Path, number: signal.Signals, *options: str) -> int:
     """Run with constant checkpoints and send a signal once the second one is there."""
-    process = subprocess.Popen(engine_command(directory, "--checkpoint-interval", "0"), stderr=subprocess.PIPE)
+    command = engine_command(directory, "--checkpoint-interval", "0", *options)
+    process = subprocess.Popen(command, stderr=subprocess.PIPE)
     job = JobDirectory(directory)
     while not job.previous_checkpoint.exists():
         assert process.poll() is None, "the run ended before it could be stopped"

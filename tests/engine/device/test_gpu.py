@@ -1,6 +1,7 @@
 """The code path of GPUs, on a Vulkan device in double and single precision; each run is a process of its own."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ import taichi as ti
 
 from engine.device.options import VARIABLE
 from engine.device.taichi_internals import is_arch_supported
-from tests.helpers.jobs import assert_same_results, run_engine, write_job
+from tests.helpers.jobs import assert_same_results, run_engine, start_and_stop, write_job
 
 TESTS = Path(__file__).parents[2]
 
@@ -38,9 +39,18 @@ def test_tensors_laws_and_gravity_hold_on_a_gpu() -> None:
     run_tests("f64", "engine/device/test_tensors.py", "engine/gravity/test_barnes_hut.py", *tests, TEST_ARCH="vulkan")
 
 
-def test_a_job_runs_resumes_and_is_priced_on_a_gpu(tmp_path: Path) -> None:
-    one, other = write_job(tmp_path / "one"), write_job(tmp_path / "other")
-    for job in (one, other):
+def test_a_killed_job_resumes_to_the_same_bits_on_a_gpu(tmp_path: Path) -> None:
+    whole, killed = (write_job(tmp_path / name, particles=30, end_time=150.0) for name in ("whole", "killed"))
+    assert start_and_stop(killed, signal.SIGKILL, "--arch", "vulkan") == -signal.SIGKILL
+    for job in (whole, killed):
         result = run_engine(job, "--arch", "gpu")
         assert result.returncode == 0, result.stderr
-    assert_same_results(one, other)
+    assert "resumed" in (killed / "log.txt").read_text()
+    assert_same_results(whole, killed)
+
+
+def test_the_parts_of_a_scene_are_priced_on_a_gpu(tmp_path: Path) -> None:
+    job = write_job(tmp_path / "job", particles=30)
+    command = [sys.executable, "-m", "engine", "explain", str(job), "--arch", "vulkan", "--steps", "3"]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode == 0 and "particles_to_grid" in result.stdout, result.stdout + result.stderr
