@@ -18,7 +18,7 @@ THEN = ; code=$$?; [ $$code -gt 1 ] || $(1); drawn=$$?; [ $$code -ne 0 ] || code
 THEN_PLOT = $(call THEN,$(MAKE) --no-print-directory plots)
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign resume plan status plots accuracy comparison stability test test-slow bench bench-gravity lint clean
+.PHONY: help install campaign resume plan status plots accuracy comparison stability test test-slow bench bench-gpu bench-gravity lint clean
 
 help: ## explain all targets
 	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
@@ -66,6 +66,9 @@ test-slow: $(INSTALLED) ## run the tests that take minutes
 
 bench: $(INSTALLED) ## time the engine and compare it with the usual way and the machine's limits
 	@$(RUN) tests.benchmarks --out '$(RUNS)/bench.json'
+
+bench-gpu: $(INSTALLED) ## time steps and cases on a GPU, repeat and verify them: OPTIONS="--arch cuda"; a quarter of an hour
+	@$(RUN) tests.benchmarks.gpu --out '$(RUNS)/bench-gpu' $(OPTIONS)
 
 bench-gravity: $(INSTALLED) ## compare gravity with pytreegrav and rebound, which it installs; half an hour
 	@$(RUN) pip install --quiet --disable-pip-version-check --editable '.[dev,bench]'

@@ -13,7 +13,7 @@ from engine.device.options import VARIABLE, Precision
 ROOT = Path(__file__).parents[2]
 
 
-def ask(module: str, precision: Precision = "f64", **arguments: float) -> dict[str, Any]:
+def ask(module: str, precision: Precision = "f64", **arguments: float | str) -> dict[str, Any]:
     """The answer of tests/benchmarks/`module`, run with these arguments in this precision."""
     command = [sys.executable, "-m", f"tests.benchmarks.{module}", json.dumps(arguments)]
     environment = {**os.environ, VARIABLE: precision}

@@ -17,9 +17,9 @@ from tests.benchmarks.stopwatch import Stopwatch, total
 GRAVITY_CALLS = 3
 
 
-def measure(particles: int, threads: int, contact: float, steps: int) -> dict[str, Any]:
+def measure(particles: int, threads: int, contact: float, steps: int, arch: str = "cpu") -> dict[str, Any]:
     """Times of `steps` steps of two bodies of `particles` each, from `contact` [s] after they met."""
-    backend.start(threads=threads)
+    backend.start(arch, threads)
     simulation = in_contact(collision(particles), contact)
     watches, rebuild = time_steps(simulation, steps)
     return {

@@ -6,6 +6,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from engine.device import backend
+
 
 class Stopwatch:
     """Times of laps [s]; CPU time is that of all threads of this process."""
@@ -19,6 +21,7 @@ class Stopwatch:
         """Time the work in the `with` block."""
         wall, cpu = time.perf_counter(), time.process_time()
         yield
+        backend.wait()
         self.wall.append(time.perf_counter() - wall)
         self.cpu.append(time.process_time() - cpu)
 
