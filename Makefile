@@ -59,7 +59,7 @@ stability: $(INSTALLED) ## run stiff and extreme cases; each is stable, or stopp
 	@$(RUN) engine stability '$(RUNS)/stability' $(if $(WORKERS),--workers $(WORKERS))
 
 test: $(INSTALLED) ## run the fast tests, a file at a time on every core
-	$(RUN) pytest -n logical --maxprocesses 8 --dist loadfile
+	$(RUN) pytest -n logical --maxprocesses 8 --dist loadfile -rs
 
 test-slow: $(INSTALLED) ## run the tests that take minutes
 	$(RUN) pytest -m slow
@@ -67,7 +67,7 @@ test-slow: $(INSTALLED) ## run the tests that take minutes
 bench: $(INSTALLED) ## time the engine and compare it with the usual way and the machine's limits
 	@$(RUN) tests.benchmarks --out '$(RUNS)/bench.json'
 
-bench-gpu: $(INSTALLED) ## time steps and cases on a GPU, repeat and verify them: OPTIONS="--arch cuda"; a quarter of an hour
+bench-gpu: $(INSTALLED) ## time steps and cases on a GPU, repeat and verify them: OPTIONS="--arch cuda"
 	@$(RUN) tests.benchmarks.gpu --out '$(RUNS)/bench-gpu' $(OPTIONS)
 
 bench-gravity: $(INSTALLED) ## compare gravity with pytreegrav and rebound, which it installs; half an hour

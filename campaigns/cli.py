@@ -79,12 +79,13 @@ def run(
             directory.read()
         waiting = sum(decide(job.status, retry_failed).runs for job in states(directory, campaign))
         gpus, jobs_on_gpu = _gpus(arch, jobs_per_gpu)
-        slots, threads = share_cores(waiting, workers or gpus * jobs_on_gpu or None, threads_per_job)
-        resources = Resources(slots, threads, gpus, scheduler, slurm)
-        share = 1.0 / jobs_on_gpu if gpus else 0.0
+        here = 0 if scheduler or slurm else gpus * jobs_on_gpu
+        slots, threads = share_cores(waiting, workers or here or None, threads_per_job)
+        resources = Resources(slots, threads, gpus, jobs_on_gpu, scheduler, slurm)
         with connect(resources) as client, display(Console()) as show:
             directory.write(campaign)
-            jobs = CampaignRun(directory, campaign, client, threads, arch, share, retry_failed).watch(show)
+            run = CampaignRun(directory, campaign, client, threads, arch, resources.gpu_share, retry_failed)
+            jobs = run.watch(show)
         _finish(directory, jobs, _arguments(study, runs))
     except KeyboardInterrupt:
         raise typer.Exit(

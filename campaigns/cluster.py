@@ -11,7 +11,7 @@ from dask.distributed import Client, LocalCluster, SpecCluster
 from dask.system import CPU_COUNT
 
 from campaigns.devices import RESOURCE
-from campaigns.worker import Worker
+from campaigns.worker import Worker, resources_of
 from engine.errors import SceneError
 
 CONNECTION_TIMEOUT = 10.0
@@ -26,6 +26,7 @@ class Resources:
         workers: jobs at the same time.
         threads: CPU threads of one job.
         gpus: of this machine; 0 for jobs on the CPU.
+        jobs_per_gpu: jobs at the same time on each.
         scheduler: address of a running dask scheduler; `None` starts a cluster of our own.
         slurm: let that cluster submit its workers to SLURM.
     """
@@ -33,8 +34,14 @@ class Resources:
     workers: int
     threads: int
     gpus: int = 0
+    jobs_per_gpu: int = 1
     scheduler: str | None = None
     slurm: bool = False
+
+    @property
+    def gpu_share(self) -> float:
+        """Part of a GPU that a job takes, rounded down so that all fit; 0 on the CPU."""
+        return (1.0 - 1e-9) / self.jobs_per_gpu if self.gpus else 0.0
 
 
 def share_cores(unfinished: int, workers: int | None, threads: int | None) -> tuple[int, int]:
@@ -55,10 +62,12 @@ def connect(resources: Resources) -> Iterator[Client]:
     """A client of the cluster that `resources` names, whose workers can run engines.
 
     Raises:
-        SceneError: the scheduler does not answer, or SLURM support is missing or not set up.
+        SceneError: the scheduler does not answer or has no GPU, or SLURM support is missing or not set up.
     """
     with _client(resources) as client:
         client.register_plugin(Worker())
+        if resources.scheduler and resources.gpus:
+            _require_gpu(client, resources.scheduler)
         yield client
 
 
@@ -96,12 +105,29 @@ def _client_of(address: str) -> Client:
         ) from error
 
 
+def _require_gpu(client: Client, scheduler: str) -> None:
+    """Refuse a scheduler all of whose workers are without GPUs: no job would ever begin."""
+    found = client.run(resources_of).values()
+    if found and not any(resources.get(RESOURCE) for resources in found):
+        raise SceneError(
+            f"--scheduler {scheduler}: none of its workers has a GPU; start them with "
+            f"'dask worker --resources \"{RESOURCE}=1\"', or use --arch cpu"
+        )
+
+
+def _with_gpu(resources: Resources) -> dict[str, list[str]]:
+    """Arguments of a SLURM cluster whose workers have one GPU each, beside those that its settings give."""
+    given = dask.config.get("jobqueue.slurm.worker-extra-args", [])
+    return {"worker_extra_args": [*given, "--resources", f"{RESOURCE}=1"]} if resources.gpus else {}
+
+
 def _slurm(resources: Resources) -> SpecCluster:
     """Workers as SLURM jobs with one job of ours at a time; memory, queue and walltime are dask-jobqueue's settings."""
     try:
         jobqueue = import_module("dask_jobqueue")
-        gpus = ["--resources", f"{RESOURCE}=1"] if resources.gpus else []
-        cluster = jobqueue.SLURMCluster(cores=1, processes=1, job_cpu=resources.threads, worker_extra_args=gpus)
+        cluster = jobqueue.SLURMCluster(
+            cores=resources.jobs_per_gpu, processes=1, job_cpu=resources.threads, **_with_gpu(resources)
+        )
     except ImportError as error:
         raise SceneError("--slurm: needs dask-jobqueue; install it with: pip install -e '.[slurm]'") from error
     except ValueError as error:

@@ -5,6 +5,7 @@ import subprocess
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from threading import Lock
 
 from engine.device.options import Arch
@@ -15,22 +16,27 @@ RESOURCE = "GPU"
 CUDA, VULKAN = "CUDA_VISIBLE_DEVICES", "TI_VISIBLE_DEVICE"
 """Environment variables by which a job sees one device."""
 
-_JOBS: Counter[str] = Counter()
+HIDDEN = ("", "-1", "NoDevFiles")
+"""Texts of the variable that hide all devices."""
+
+_JOBS: Counter[tuple[str, str]] = Counter()
 _LOCK = Lock()
 
 LIST_GPUS = ("nvidia-smi", "--query-gpu=index", "--format=csv,noheader")
 
 
 def visible(arch: Arch) -> tuple[str, list[str]]:
-    """The variable that names a job's device, and the devices that this process sees; one if it cannot tell.
+    """The variable that names a job's device, and the devices that this process sees; "" is the driver's choice.
 
     Args:
         arch: any but `cpu`.
     """
-    cuda = _given(CUDA) or _listed()
+    cuda = _given(CUDA)
+    if cuda is None:
+        cuda = _listed()
     if arch == Arch.CUDA or (arch == Arch.GPU and cuda):
-        return CUDA, cuda or ["0"]
-    return VULKAN, _given(VULKAN) or ["0"]
+        return CUDA, cuda or [""]
+    return VULKAN, _given(VULKAN) or [""]
 
 
 @contextmanager
@@ -41,19 +47,24 @@ def one_device(arch: Arch) -> Iterator[dict[str, str]]:
         return
     variable, devices = visible(arch)
     with _LOCK:
-        device = min(devices, key=lambda name: _JOBS[name])
-        _JOBS[device] += 1
+        device = min(devices, key=lambda name: _JOBS[variable, name])
+        _JOBS[variable, device] += 1
     try:
-        yield {**os.environ, variable: device}
+        yield {**os.environ, variable: device} if device else dict(os.environ)
     finally:
         with _LOCK:
-            _JOBS[device] -= 1
+            _JOBS[variable, device] -= 1
 
 
-def _given(variable: str) -> list[str]:
-    return [device.strip() for device in os.environ.get(variable, "").split(",") if device.strip()]
+def _given(variable: str) -> list[str] | None:
+    """Devices that the environment names, none where it hides all; `None` where it says nothing."""
+    text = os.environ.get(variable)
+    if text is None:
+        return None
+    return [] if text.strip() in HIDDEN else [device.strip() for device in text.split(",") if device.strip()]
 
 
+@cache
 def _listed() -> list[str]:
     """Devices of NVIDIA's driver; none if it is not there or does not answer."""
     try:

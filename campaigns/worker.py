@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Protocol
+from typing import IO, Any, Protocol
 
 from dask.distributed import WorkerPlugin, get_worker
 
@@ -98,9 +98,11 @@ class DaskWorker(Protocol):
 
     Attributes:
         plugins: by name.
+        state: with what the worker was started with, `total_resources`.
     """
 
     plugins: dict[str, Worker]
+    state: Any
 
 
 def run_job(directory: Path, threads: int, arch: Arch, retry_failed: bool) -> EngineExit:
@@ -114,6 +116,11 @@ def run_job(directory: Path, threads: int, arch: Arch, retry_failed: bool) -> En
     """
     worker: DaskWorker = get_worker()
     return worker.plugins[Worker.name].run(directory, threads, arch, retry_failed)
+
+
+def resources_of(dask_worker: DaskWorker) -> dict[str, float]:
+    """What a worker was started with, by name; dask passes the worker."""
+    return dict(dask_worker.state.total_resources)
 
 
 def signal_jobs(directories: Collection[Path], number: int, dask_worker: DaskWorker) -> int:

@@ -69,7 +69,7 @@ def open_scene(scene: Scene | Path | str, arch: str = "cpu", threads: int | None
 
     Args:
         scene: a scene, a scene file (TOML or JSON), or a job directory, which is only read.
-        arch: `cpu` or `cuda`.
+        arch: `cpu`, `cuda`, `vulkan` or `gpu`.
         threads: CPU threads; all cores if `None`.
 
     Raises:

@@ -16,5 +16,7 @@ def taichi() -> Iterator[None]:
     """A freshly started Taichi, on one thread or the device that TEST_ARCH names; fields of earlier tests are gone."""
     from engine.device import backend
 
-    backend.start(os.environ.get("TEST_ARCH", "cpu"), threads=1)
+    arch = os.environ.get("TEST_ARCH", "cpu")
+    backend.start(arch, threads=1)
+    assert backend.on_gpu() == (arch != "cpu")
     yield

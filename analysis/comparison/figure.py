@@ -12,6 +12,9 @@ from analysis.report.figures.style import BLUE, GREY, MARKERS, ORANGE, SYMBOLS, 
 Name = tuple[str, str]
 """Method and material."""
 
+SIZE, FEWEST = 3.5, 1000.0
+"""Size [pt] of a mark, and the particles of a body to which it belongs."""
+
 TITLES = {
     "mass_ratio": SYMBOLS["mass_ratio"],
     "bound_mass_ratio": "bound mass$\\,/\\,M_\\mathrm{target}$",
@@ -24,6 +27,8 @@ TITLES = {
 @styled
 def beside_other_methods(rows: pd.DataFrame) -> Figure:
     """Draw a row of panels for each collision: every method at its value, bars of one standard deviation over seeds.
+
+    Marks grow with the number of particles.
 
     Args:
         rows: of all methods.
@@ -58,6 +63,7 @@ def _panel(axes: Axes, group: pd.DataFrame, quantity: str, names: list[Name], lo
             -names.index(name),
             xerr=spread if spread == spread else None,
             marker=looks[name],
+            markersize=SIZE * (row["particles"] / FEWEST) ** 0.2 if row["particles"] > 0.0 else SIZE,
             color=colour,
             markerfacecolor=colour if own else "white",
             linestyle="none",

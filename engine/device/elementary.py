@@ -1,18 +1,23 @@
 """Elementary functions in the precision of this process, also where the device has none in double precision.
 
 Kernels for Vulkan have those of the device in single precision only. In double precision the functions below then use
-arithmetic, square roots and the bits of a number: they err by 2 units in the last place at most, `log1p` and `expm1` by
-4, and `power(x, y)` by 2^-52 (2 + |y ln x|) of its value. Arguments are finite; `log`, `cbrt` and `power` take normal
-positive ones, `sin` and `cos` |x| < 1e5.
+arithmetic, square roots and the bits of a number: they err by 3 units in the last place at most, `log1p` and `expm1` by
+4, and `power(x, y)` by 2^-52 (2 + |y ln x|) of its value. A positive argument of `log`, `cbrt` and `power` is a normal
+number, `sin` and `cos` take |x| < 1e5. Reductions rely on the order of differences, which a driver may change: tests
+show whether one does.
 """
 
 import math
 
 import taichi as ti
+import taichi.math as tm
 
 from engine.device.backend import has_elementary_functions
 
 LOG_2, SQRT_2 = math.log(2.0), math.sqrt(2.0)
+
+LEAST_EXPONENT = -746.0
+"""Below it e^x is zero."""
 
 LN2 = (0.6931471806019545, -4.2009150726810846e-11)
 """ln 2 to 32 bits, which any exponent multiplies exactly, and the rest."""
@@ -28,7 +33,7 @@ ARCSINE_DENOMINATOR = (
     *(1.0, -2.40339491173441421878, 2.02094576023350569471),
     *(-6.88283971605453293030e-01, 7.70381505559019352791e-02),
 )
-"""Of (asin(x)/x - 1)/x^2 in powers of x^2, for |x| <= 1/2, the numerator without its factor x^2 (fdlibm, e_asin.c)."""
+"""Of (asin(x)/x - 1)/x^2 in powers of x^2, for |x| <= 1/2 (fdlibm, e_asin.c)."""
 
 EXPONENTIAL = tuple(1.0 / math.factorial(n) for n in range(2, 15))
 LOGARITHM = tuple(2.0 / (2 * n + 1) for n in range(1, 12))
@@ -49,6 +54,8 @@ def exp(x):
         half = ti.cast(n, ti.i32) // 2
         result = (1.0 + (r + r * r * polynomial(r, EXPONENTIAL))) * power_of_two(half)
         result *= power_of_two(ti.cast(n, ti.i32) - half)
+        if x < LEAST_EXPONENT:
+            result = 0.0
     return result
 
 
@@ -58,16 +65,25 @@ def log(x):
     result = x
     if ti.static(has_elementary_functions()):
         result = ti.log(x)
-    else:
-        n = ti.cast((ti.bit_cast(x, ti.i64) >> 52) - 1023, ti.i32)
-        m = x * power_of_two(-n)
-        if m > SQRT_2:
-            m, n = 0.5 * m, n + 1
-        f = m - 1.0
-        s, half_square = f / (2.0 + f), 0.5 * f * f
-        tail = s * (half_square + s * s * polynomial(s * s, LOGARITHM))
-        result = n * LN2[0] - ((half_square - (tail + n * LN2[1])) - f)
+    elif x > 0.0:
+        result = positive_log(x)
+    elif x <= 0.0:
+        result = -tm.inf if x == 0.0 else tm.nan
     return result
+
+
+@ti.func
+def positive_log(x):
+    """Return ln x of a normal positive number x = m 2^n, with f = m - 1."""
+    bits = ti.bit_cast(x, ti.i64)
+    n = ti.cast((bits >> 52) - 1023, ti.i32)
+    m = ti.bit_cast(bits - (ti.cast(n, ti.i64) << 52), ti.f64)
+    if m > SQRT_2:
+        m, n = 0.5 * m, n + 1
+    f = m - 1.0
+    s, half_square = f / (2.0 + f), 0.5 * f * f
+    tail = s * (half_square + s * s * polynomial(s * s, LOGARITHM))
+    return n * LN2[0] - ((half_square - (tail + n * LN2[1])) - f)
 
 
 @ti.func

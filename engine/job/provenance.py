@@ -25,7 +25,7 @@ def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> 
     Args:
         job: the job directory.
         scene: what is run.
-        arch: `cpu` or `cuda`.
+        arch: `cpu`, `cuda`, `vulkan` or `gpu`.
         threads: CPU threads.
 
     Raises:

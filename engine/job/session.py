@@ -36,7 +36,7 @@ class Options:
     """Options of a session, without influence on results.
 
     Attributes:
-        arch: `cpu` or `cuda`.
+        arch: `cpu`, `cuda`, `vulkan` or `gpu`.
         threads: CPU threads.
         checkpoint_interval: computing time between checkpoints [s].
         report: called with the status every few seconds.

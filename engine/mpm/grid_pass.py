@@ -10,7 +10,7 @@ import taichi as ti
 from engine.device.backend import TASK, Real, vec3, vec4
 from engine.device.fields import allocate
 from engine.mpm.interfaces import ContactLaw, Exchange
-from engine.mpm.spline import WIDTH, spline_weight, spline_weights
+from engine.mpm.spline import WIDTH, spline_weights, weight_of
 from engine.mpm.stencil import COPY, TILE, Stencil, node_in_tile
 from engine.mpm.time_step import no_limits, rate_of, tightest
 from engine.state.clock import Clock
@@ -136,11 +136,10 @@ class GridPass:
         """Return the sum of what the particles of its block give to node n: momentum [kg m/s] and mass [kg]."""
         total = vec4(0.0)
         for p in range(self.stencil.first[n // COPY], self.stencil.first[n // COPY + 1]):
-            above, distance = self.stencil.seen_from(p, n)
+            above, f = self.stencil.seen_from(p, n)
             if above.min() >= 0 and above.max() < WIDTH:
                 mass, momentum, affine = self.exchange.give(p, self.dx())
-                w = spline_weight(distance)
-                total += w[0] * w[1] * w[2] * vec4(momentum + affine @ distance, mass)
+                total += weight_of(spline_weights(f), above) * vec4(momentum + affine @ (above - f), mass)
         return total
 
     @ti.func

@@ -25,14 +25,12 @@ def spline_weights(f):
 
 
 @ti.func
-def spline_weight(distance):
-    """Return the weight of a node at a distance [cells] along every axis, none of them beyond REACH; shape [3]."""
-    x = ti.abs(distance)
-    inner, outer = 0.75 - x * x, 0.5 * (REACH - x) ** 2
-    result = outer
-    for axis in ti.static(range(3)):
-        if x[axis] < 0.5:
-            result[axis] = inner[axis]
+def weight_of(w, node):
+    """Return the weight of one of the 27 nodes, by its coordinates above the lowest one, of the weights of all axes."""
+    result = ti.cast(1.0, Real)
+    for axis, i in ti.static(ti.ndrange(3, WIDTH)):
+        if node[axis] == i:
+            result *= w[axis, i]
     return result
 
 

@@ -129,13 +129,13 @@ class Stencil:
 
     @ti.func
     def seen_from(self, p, n):
-        """Return the coordinates of node n above the lowest node of particle p, both of one block, and from p [cells].
+        """Return the coordinates of node n above the lowest node of particle p of its block, and its distance [cells].
 
-        The particle gives to the node if all of the first are from 0 to WIDTH - 1.
+        The particle gives to the node if all coordinates are from 0 to WIDTH - 1.
         """
         local, f = self.place(p, n // COPY)
         above = in_copy_coordinates(n % COPY) - local
-        return above, ti.cast(above, Real) - f
+        return above, f
 
     @ti.func
     def gather(self, n, f, w):

@@ -67,7 +67,7 @@ def measure(source: Path, steps: int, arch: str, threads: int) -> Measurement:
     Args:
         source: a scene file or a job directory.
         steps: number of steps to measure, after one that compiles.
-        arch: `cpu` or `cuda`.
+        arch: `cpu`, `cuda`, `vulkan` or `gpu`.
         threads: CPU threads.
 
     Raises:

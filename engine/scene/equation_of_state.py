@@ -75,6 +75,8 @@ class AlgebraicEquationOfState(EquationOfState):
     def formula(m: Any, mu: Any, E: Any) -> tuple[Any, Any]:
         """Pressure [Pa] and squared sound speed [m^2/s^2]; only arithmetic, because the device compiles its source.
 
+        A power is `power(x, y)`, a name of the form's module: the device has its own (engine/device/elementary.py).
+
         Args:
             m: the constants of the form and `rho0` [kg/m^3], as attributes.
             mu: rho/rho0 - 1 [-].

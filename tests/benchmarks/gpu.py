@@ -1,4 +1,4 @@
-"""What there is to know of the engine on a GPU, in a quarter of an hour: `make bench-gpu OPTIONS="--arch cuda"`."""
+"""What there is to know of the engine on a GPU, in one command: `make bench-gpu OPTIONS="--arch cuda"`."""
 
 import json
 import shutil
@@ -33,6 +33,8 @@ def main(
     out: Annotated[Path, typer.Option(help="New directory for jobs and figures.")] = Path("runs/bench-gpu"),
 ) -> None:
     """Time steps, repeat a short run, run a case, verify, and count cases per hour."""
+    if out.exists():
+        raise typer.BadParameter(f"{out} is there already; give another directory by --out, or remove it")
     out.mkdir(parents=True)
     results = {"arch": arch.value, "commit": commit(), "host": host(), "device": _device()}
     for name, measure in {
@@ -49,7 +51,7 @@ def main(
 
 def _steps(arch: Arch, particles: int, precision: Precision) -> Results:
     """Time of a step and its stages, of sorting and of gravity; or why there is none, as on a card that is full."""
-    # matter in contact at once: the way there would take longer than what is timed
+    # bodies have just met: the way to 100 s would take longer than what is timed
     given = {"particles": particles, "threads": 1, "contact": 0.0, "steps": STEPS, "arch": arch.value}
     try:
         found = ask("steps", precision, **given)

@@ -4,9 +4,11 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 
+import dask
 import pytest
+from dask.distributed import LocalCluster
 
-from campaigns import devices
+from campaigns import cluster, devices
 from campaigns.cli import _gpus
 from campaigns.cluster import Resources, connect
 from campaigns.devices import CUDA, RESOURCE, VULKAN, one_device, visible
@@ -17,9 +19,11 @@ from engine.errors import SceneError
 @pytest.fixture(autouse=True)
 def no_driver(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(devices, "LIST_GPUS", ("no-such-command",))
+    devices._listed.cache_clear()
     for variable in (CUDA, VULKAN):
         monkeypatch.delenv(variable, raising=False)
     yield
+    devices._listed.cache_clear()
 
 
 def driver(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
@@ -30,12 +34,12 @@ def driver(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
 @pytest.mark.parametrize(
     ("arch", "given", "expected"),
     [
-        (Arch.CUDA, {}, (CUDA, ["0"])),
+        (Arch.CUDA, {}, (CUDA, [""])),
         (Arch.CUDA, {CUDA: "3, 5"}, (CUDA, ["3", "5"])),
         (Arch.CUDA, {CUDA: "GPU-8932f937,GPU-ab"}, (CUDA, ["GPU-8932f937", "GPU-ab"])),
-        (Arch.VULKAN, {CUDA: "3,5"}, (VULKAN, ["0"])),
+        (Arch.VULKAN, {CUDA: "3,5"}, (VULKAN, [""])),
         (Arch.VULKAN, {VULKAN: "1"}, (VULKAN, ["1"])),
-        (Arch.GPU, {}, (VULKAN, ["0"])),
+        (Arch.GPU, {}, (VULKAN, [""])),
         (Arch.GPU, {CUDA: "1"}, (CUDA, ["1"])),
     ],
 )
@@ -52,6 +56,9 @@ def test_a_process_that_may_see_all_sees_those_of_the_driver(monkeypatch: pytest
     assert visible(Arch.GPU) == visible(Arch.CUDA) == (CUDA, ["0", "1", "2", "3"])
     monkeypatch.setenv(CUDA, "2")
     assert visible(Arch.GPU) == (CUDA, ["2"])
+    for hidden in ("", "-1"):
+        monkeypatch.setenv(CUDA, hidden)
+        assert visible(Arch.GPU) == (VULKAN, [""]), "all of them are hidden"
 
 
 def test_the_next_job_gets_the_device_with_the_fewest(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -63,8 +70,9 @@ def test_the_next_job_gets_the_device_with_the_fewest(monkeypatch: pytest.Monkey
             assert environment[CUDA] == "1"
         with one_device(Arch.CUDA) as environment:
             assert environment[CUDA] == "1", "the job before has ended"
-    with one_device(Arch.CPU) as environment:
-        assert CUDA not in environment
+    for arch in (Arch.CPU, Arch.VULKAN):
+        with one_device(arch) as environment:
+            assert not {CUDA, VULKAN} & environment.keys(), "the driver chooses"
 
 
 def times_of_a_job() -> tuple[float, float]:
@@ -74,12 +82,30 @@ def times_of_a_job() -> tuple[float, float]:
     return begin, time.monotonic()
 
 
-@pytest.mark.parametrize(("share", "most"), [(1.0, 2), (0.5, 4)])
-def test_no_more_jobs_run_than_the_gpus_bear(share: float, most: int) -> None:
-    with connect(Resources(workers=8, threads=1, gpus=2)) as client:
-        jobs = [client.submit(times_of_a_job, pure=False, resources={RESOURCE: share}) for _ in range(8)]
-        times = client.gather(jobs)
+@pytest.mark.parametrize(("jobs_per_gpu", "most"), [(1, 2), (2, 4), (9, 18)])
+def test_as_many_jobs_run_as_the_gpus_bear(jobs_per_gpu: int, most: int) -> None:
+    resources = Resources(workers=20, threads=1, gpus=2, jobs_per_gpu=jobs_per_gpu)
+    needed = {RESOURCE: resources.gpu_share}
+    with connect(resources) as client:
+        times = client.gather([client.submit(times_of_a_job, pure=False, resources=needed) for _ in range(2 * most)])
     assert max(sum(begin <= t < end for begin, end in times) for t, _ in times) == most
+
+
+def test_a_scheduler_whose_workers_have_no_gpu_is_refused() -> None:
+    with LocalCluster(n_workers=1, processes=False, dashboard_address="127.0.0.1:0") as local:
+        address = local.scheduler_address
+        on_gpu = Resources(workers=1, threads=1, gpus=1, scheduler=address)
+        with pytest.raises(SceneError, match="none of its workers has a GPU; start them with"), connect(on_gpu):
+            pass
+        with connect(Resources(workers=1, threads=1, scheduler=address)):
+            pass
+
+
+def test_slurm_workers_have_a_gpu_only_if_asked_and_keep_what_the_settings_give() -> None:
+    with dask.config.set({"jobqueue.slurm.worker-extra-args": ["--nanny"]}):
+        assert cluster._with_gpu(Resources(workers=1, threads=1)) == {}
+        given = cluster._with_gpu(Resources(workers=1, threads=1, gpus=1))
+    assert given == {"worker_extra_args": ["--nanny", "--resources", "GPU=1"]}
 
 
 def test_jobs_on_a_gpu_are_refused_on_the_cpu(monkeypatch: pytest.MonkeyPatch) -> None:

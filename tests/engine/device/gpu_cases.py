@@ -48,13 +48,13 @@ GENERATOR = np.random.default_rng(7)
 FUNCTIONS = {
     "exp": (np.exp, GENERATOR.uniform(-700.0, 700.0, 4096)),
     "expm1": (np.expm1, GENERATOR.uniform(-5.0, 5.0, 4096)),
-    "log": (np.log, 10.0 ** GENERATOR.uniform(-300.0, 300.0, 4096)),
+    "log": (np.log, 10.0 ** GENERATOR.uniform(-307.0, 308.0, 4096)),
     "log1p": (np.log1p, GENERATOR.uniform(-0.9, 9.0, 4096)),
     "cbrt": (np.cbrt, 10.0 ** GENERATOR.uniform(-100.0, 100.0, 4096)),
-    "sin": (np.sin, GENERATOR.uniform(-100.0, 100.0, 4096)),
-    "cos": (np.cos, GENERATOR.uniform(-100.0, 100.0, 4096)),
-    "asin": (np.arcsin, np.linspace(-1.0, 1.0, 4097)),
-    "acos": (np.arccos, np.linspace(-1.0, 1.0, 4097)),
+    "sin": (np.sin, GENERATOR.uniform(-1e5, 1e5, 100_000)),
+    "cos": (np.cos, GENERATOR.uniform(-1e5, 1e5, 100_000)),
+    "asin": (np.arcsin, np.linspace(-1.0, 1.0, 100_001)),
+    "acos": (np.arccos, np.linspace(-1.0, 1.0, 100_001)),
 }
 
 
@@ -68,7 +68,18 @@ def place(values: Array) -> Array:
 def test_elementary_functions_err_in_the_last_places(device: None, name: str) -> None:
     exact, x = FUNCTIONS[name]
     (found,) = evaluate(getattr(elementary, name), x)
-    assert (np.abs(found - exact(x)) / place(exact(x))).max() <= (4.0 if name in ("expm1", "log1p") else 2.0)
+    assert (np.abs(found - exact(x)) / place(exact(x))).max() <= (4.0 if name in ("expm1", "log1p") else 3.0)
+
+
+@pytest.mark.skipif(not DOUBLE, reason="in single precision they are the device's own")
+def test_what_is_no_number_stays_none(device: None) -> None:
+    """The guard sees it then."""
+    (logs,) = evaluate(elementary.log, np.array([-1.0, np.nan, 0.0]))
+    assert np.isnan(logs[:2]).all() and logs[2] == -np.inf
+    (powers,) = evaluate(elementary.power, np.array([-0.5, np.nan]), np.array([3.5, 1.0]))
+    assert np.isnan(powers).all()
+    (exponentials,) = evaluate(elementary.exp, np.array([-1e30, 1e30, np.nan]))
+    assert exponentials[0] == 0.0 and exponentials[1] == np.inf and np.isnan(exponentials[2])
 
 
 @pytest.mark.skipif(not DOUBLE, reason="in single precision they are the device's own")
