@@ -1,15 +1,18 @@
 """Checkpoints: a simulation goes on from one as if it had never stopped."""
 
+import hashlib
+import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from engine import PHYSICS_VERSION
 from engine.device import backend
 from engine.errors import JobError
-from engine.job.checkpoint import load_checkpoint, save_checkpoint
+from engine.job.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
 from engine.job.directory import JobDirectory
 from engine.job.session import Options, run_job
 from engine.job.storage import read_dataset, write_dataset
@@ -88,12 +91,24 @@ def test_an_incomplete_checkpoint_gives_way_to_the_one_before(tmp_path: Path, mi
 def test_a_checkpoint_of_another_scene_or_version_is_refused(tmp_path: Path) -> None:
     job, simulation = JobDirectory(tmp_path), started(pair(**BARE))
     save_checkpoint(job, simulation, {})
+    another = pair(**BARE).model_copy(update={"seed": 2})
+    (tmp_path / "scene.json").write_text(another.canonical())
     with pytest.raises(JobError, match="belongs to another scene"):
-        load_checkpoint(job, Simulation(pair(**BARE).model_copy(update={"seed": 2})))
+        load_checkpoint(job, Simulation(another))
     other = read_dataset(job.checkpoint).assign_attrs(physics_version=PHYSICS_VERSION + 1)
     write_dataset(job.checkpoint, other)
     with pytest.raises(JobError, match=f"physics version {PHYSICS_VERSION + 1}"):
         load_checkpoint(job, Simulation(simulation.scene))
+
+
+def test_a_file_of_the_scene_as_a_version_with_fewer_keys_wrote_it_belongs_to_it(tmp_path: Path) -> None:
+    scene = pair(**BARE)
+    table = json.loads(scene.canonical())
+    del table["numerics"]["filter_time"]
+    (tmp_path / "scene.json").write_text(json.dumps(table))
+    written = hashlib.sha256((tmp_path / "scene.json").read_bytes()).hexdigest()
+    dataset = xr.Dataset(attrs={"physics_version": PHYSICS_VERSION, "scene_hash": written})
+    refuse_foreign(dataset, scene, tmp_path / "checkpoint.nc")
 
 
 def test_a_bare_scene_writes_all_variables_and_resumes_to_the_same_bits(tmp_path: Path) -> None:
