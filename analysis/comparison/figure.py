@@ -12,7 +12,7 @@ from analysis.report.figures.style import BLUE, GREY, MARKERS, ORANGE, SYMBOLS, 
 Name = tuple[str, str]
 """Method and material."""
 
-SIZE, FEWEST = 3.5, 1000.0
+SIZE, FEWEST = 4.0, 1000.0
 """Size [pt] of a mark, and the particles of a body to which it belongs."""
 
 TITLES = {
@@ -63,7 +63,7 @@ def _panel(axes: Axes, group: pd.DataFrame, quantity: str, names: list[Name], lo
             -names.index(name),
             xerr=spread if spread == spread else None,
             marker=looks[name],
-            markersize=SIZE * (row["particles"] / FEWEST) ** 0.2 if row["particles"] > 0.0 else SIZE,
+            markersize=SIZE * (row["particles"] / FEWEST) ** 0.12 if row["particles"] > 0.0 else SIZE,
             color=colour,
             markerfacecolor=colour if own else "white",
             linestyle="none",
