@@ -19,7 +19,7 @@ from analysis.remnant.spin import spin_period
 from analysis.remnant.variables import DAMAGED, DRIFTS, UndescribedError, described
 from engine.errors import JobError, RunFault, SceneError
 from engine.job.directory import JobDirectory, JobState
-from engine.scene.scene import Scene, contains_scene, scene_in
+from engine.scene.scene import Scene, is_hash_of, scene_in
 
 Numbers = dict[str, float]
 
@@ -131,7 +131,7 @@ def measure(job: JobDirectory, particles: Particles, labels: Integers) -> Number
         UndescribedError: a variable is measured and not described, or described and not measured.
     """
     scene, status = scene_in(job.path), job.status()
-    if not contains_scene(job.path, particles.scene_hash):
+    if not is_hash_of(particles.scene_hash, scene, job.path):
         raise SceneError(f"{job.path}: contains particles that are not of the scene in this directory")
     remnant = particles.select(labels == 0)
     clumps = as_points(labels, particles.mass, particles.position, particles.velocity)

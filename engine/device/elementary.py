@@ -141,7 +141,7 @@ def asin(x):
     elif ti.abs(x) <= 0.5:
         result = small_arcsine(x)
     else:
-        result = 0.5 * math.pi - 2.0 * small_arcsine(ti.sqrt(0.5 * (1.0 - ti.abs(x))))
+        result = 0.5 * math.pi - small_arccosine(ti.abs(x))
         if x < 0.0:
             result = -result
     return result
@@ -156,7 +156,7 @@ def acos(x):
     elif ti.abs(x) <= 0.5:
         result = 0.5 * math.pi - small_arcsine(x)
     else:
-        result = 2.0 * small_arcsine(ti.sqrt(0.5 * (1.0 - ti.abs(x))))
+        result = small_arccosine(ti.abs(x))
         if x < 0.0:
             result = math.pi - result
     return result
@@ -181,6 +181,12 @@ def small_arcsine(x):
     """Return the arcsine of |x| <= 1/2."""
     z = x * x
     return x + x * z * polynomial(z, ARCSINE_NUMERATOR) / polynomial(z, ARCSINE_DENOMINATOR)
+
+
+@ti.func
+def small_arccosine(x):
+    """Return the arccosine of x from 1/2 to 1."""
+    return 2.0 * small_arcsine(ti.sqrt(0.5 * (1.0 - x)))
 
 
 @ti.func

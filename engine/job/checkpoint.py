@@ -8,7 +8,7 @@ from engine import PHYSICS_VERSION
 from engine.errors import JobError
 from engine.job.directory import JobDirectory
 from engine.job.storage import is_finite, read_dataset, write_dataset
-from engine.scene.scene import Scene, contains_scene
+from engine.scene.scene import Scene, is_hash_of
 from engine.simulation.simulation import Simulation
 from engine.state.particles import Arrays
 
@@ -78,8 +78,7 @@ def refuse_foreign(dataset: xr.Dataset, scene: Scene, path: Path) -> None:
             f"{path}: written with physics version {dataset.attrs['physics_version']}, this is version "
             f"{PHYSICS_VERSION}; results would mix: run the scene in a new directory"
         )
-    written = dataset.attrs["scene_hash"]
-    if written != scene.hash() and not contains_scene(path.parent, written):
+    if not is_hash_of(dataset.attrs["scene_hash"], scene, path.parent):
         raise JobError(f"{path}: belongs to another scene; run the changed scene in a new directory")
 
 

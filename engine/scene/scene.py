@@ -300,16 +300,20 @@ def scene_file(directory: Path) -> Path:
     return found[0]
 
 
-def contains_scene(directory: Path, scene_hash: str) -> bool:
+def is_hash_of(scene_hash: str, scene: Scene, directory: Path) -> bool:
     """Whether the scene of a job directory has this hash, as it means now or as its file was written.
 
     A version with more keys writes the same scene as another text.
 
+    Args:
+        scene_hash: as a file of the job has it.
+        scene: of the directory.
+        directory: the job directory.
+
     Raises:
-        SceneError: the scene cannot be read.
+        SceneError: the scene has another hash, and there is no file of it, or more than one.
     """
-    written = hashlib.sha256(scene_file(directory).read_bytes()).hexdigest()
-    return scene_hash in (written, scene_in(directory).hash())
+    return scene_hash == scene.hash() or scene_hash == hashlib.sha256(scene_file(directory).read_bytes()).hexdigest()
 
 
 def scene_at(source: Path) -> Scene:

@@ -1,4 +1,4 @@
-"""What there is to know of the engine on a GPU, in one command: `make bench-gpu OPTIONS="--arch cuda"`."""
+"""Steps, repeatability, a whole case, verification and cases per hour: `make bench-gpu OPTIONS="--arch cuda"`."""
 
 import json
 import shutil
