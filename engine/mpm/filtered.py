@@ -10,6 +10,7 @@ import taichi as ti
 
 from engine.device.backend import Real, mat3, vec3
 from engine.device.fields import allocate, capacity
+from engine.device.launches import Kernel
 from engine.device.tensors import moved, norm_squared
 from engine.mpm.affine import affine_velocity
 from engine.mpm.interfaces import Boundary, Exchange, Stage
@@ -233,8 +234,13 @@ class Drift:
     def __init__(self, scheme: Filtered) -> None:
         self.scheme, self.particles, self.clock = scheme, scheme.particles, scheme.clock
 
+    @property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """A loop over particles."""
+        return (self.move,)
+
     @ti.kernel
-    def run(self):
+    def move(self):
         """Move all particles, unless the clock has paused."""
         half = 0.5 * self.clock.dt[None]
         for p in range(self.particles.count * self.clock.running[None]):

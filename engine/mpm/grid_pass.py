@@ -9,6 +9,7 @@ import taichi as ti
 
 from engine.device.backend import TASK, Real, vec3, vec4
 from engine.device.fields import allocate
+from engine.device.launches import Kernel
 from engine.mpm.interfaces import ContactLaw, Exchange
 from engine.mpm.spline import WIDTH, spline_weights, weight_of
 from engine.mpm.stencil import COPY, TILE, Stencil, node_in_tile
@@ -38,11 +39,10 @@ class GridPass:
         """Name of the exchange."""
         return self.exchange.name
 
-    def run(self) -> None:
-        """Exchange once, unless the clock has paused."""
-        self.particles_to_grid()
-        self.update_grid()
-        self.grid_to_particles()
+    @property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """Loops over blocks, nodes, and blocks."""
+        return self.particles_to_grid, self.update_grid, self.grid_to_particles
 
     @ti.kernel
     def particles_to_grid(self):

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import Protocol
 
+from engine.device.launches import Kernel
+
 
 class Boundary(Protocol):
     """What bounds space, acting on nodes and on ballistic particles (engine/physics.md, section 11)."""
@@ -67,8 +69,9 @@ class Exchange(Protocol):
 class Stage(Protocol):
     """A part of a time step for all particles."""
 
-    def run(self) -> None:
-        """Do it, unless the clock has paused."""
+    @property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """What it does, in order; they do nothing when the clock has paused."""
 
 
 class Scheme(Protocol):

@@ -2,8 +2,9 @@
 
 import taichi as ti
 
+from engine.device.launches import Kernel, Launches
 from engine.mpm.grid_pass import GridPass
-from engine.mpm.interfaces import ContactLaw, Scheme
+from engine.mpm.interfaces import ContactLaw, Scheme, Stage
 from engine.mpm.stencil import Stencil
 from engine.state.clock import Clock
 
@@ -21,17 +22,19 @@ class Transfer:
 
     Attributes:
         stages: of a step, in order.
+        step: advances all particles by one time step, unless the clock says to pause.
     """
 
     def __init__(self, stencil: Stencil, scheme: Scheme, contact: ContactLaw, clock: Clock, cfl: float) -> None:
         self.clock = clock
         self.stages = scheme.stages(lambda exchange: GridPass(stencil, exchange, contact, clock, cfl))
+        parts: tuple[Stage, ...] = (self, *self.stages)
+        self.step: Kernel = Launches(*(kernel for part in parts for kernel in part.kernels))
 
-    def step(self) -> None:
-        """Advance all particles by one time step, unless the clock says to pause."""
-        self.begin()
-        for stage in self.stages:
-            stage.run()
+    @property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """What comes before the stages."""
+        return (self.begin,)
 
     @ti.kernel
     def begin(self):

@@ -106,6 +106,14 @@ def _watch(result: Measurement) -> None:
         for name in part.kernels:
             cost = result.kernels[part.name, name] = Cost()
             setattr(part.content, name, _timed(getattr(part.content, name), cost))
+    transfer = result.simulation.transfer
+
+    def step() -> None:
+        for stage in (transfer, *transfer.stages):
+            for kernel in stage.kernels:
+                kernel()
+
+    transfer.step = step
 
 
 def _timed(kernel: Callable[Arguments, Result], cost: Cost) -> Callable[Arguments, Result]:

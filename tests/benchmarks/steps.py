@@ -5,6 +5,7 @@ from typing import Any
 
 from engine.device import backend
 from engine.device.backend import Real
+from engine.device.launches import Launches
 from engine.profile.parts import name_in_tuple
 from engine.scene.scene import Gravity
 from engine.simulation.simulation import Simulation
@@ -57,7 +58,7 @@ def time_steps(simulation: Simulation, steps: int) -> tuple[list[Stopwatch], Sto
 def stages(simulation: Simulation) -> list[tuple[str, Callable[[], None]]]:
     """Names and kernels of the stages of a step, in order."""
     transfer = simulation.transfer
-    return [("begin", transfer.begin), *((name_in_tuple(stage), stage.run) for stage in transfer.stages)]
+    return [(name_in_tuple(part), Launches(*part.kernels)) for part in (transfer, *transfer.stages)]
 
 
 def phases(simulation: Simulation, watches: Sequence[Stopwatch]) -> dict[str, dict[str, float]]:

@@ -13,9 +13,11 @@ from engine.device.taichi_internals import (
     ASTTransformerContext,
     Field,
     StructField,
+    compiled,
     current_cfg,
     is_arch_supported,
     is_kernel,
+    launch,
     to_numpy_type,
 )
 
@@ -24,9 +26,12 @@ ENGINE = Path(taichi_internals.__file__).parents[1]
 
 @ti.data_oriented
 class Part:
+    def __init__(self, increment: int = 1) -> None:
+        self.total, self.increment = ti.field(ti.i32, ()), increment
+
     @ti.kernel
     def kernel(self):
-        pass
+        self.total[None] += self.increment
 
     @ti.func
     def function(self):
@@ -55,6 +60,16 @@ def test_the_running_architecture_is_known():
 def test_kernels_are_known_by_their_mark():
     assert is_kernel(vars(Part)["kernel"])
     assert not is_kernel(vars(Part)["function"])
+
+
+@pytest.mark.usefixtures("taichi")
+def test_a_compiled_kernel_is_that_of_its_object_and_runs_at_every_launch():
+    one, three = Part(1), Part(3)
+    ready = [compiled(one.kernel), compiled(three.kernel)]
+    assert (one.total[None], three.total[None]) == (0, 0)
+    for kernel in (*ready, *ready):
+        launch(kernel)
+    assert (one.total[None], three.total[None]) == (2, 6)
 
 
 def test_the_compiler_asks_for_source_positions():

@@ -37,7 +37,7 @@ def test_every_stage_of_a_step_is_one_part() -> None:
     assert [(part.name, set(part.kernels)) for part in stages] == [
         ("kick", grid),
         ("wall", grid),
-        ("drift", {"run"}),
+        ("drift", {"move"}),
         ("projection", grid),
         ("correction", grid),
     ]

@@ -38,7 +38,7 @@ def test_a_column_is_explained_without_what_it_leaves_out(tmp_path):
     assert re.search(r"scheme │ Filtered │ kicked, remainder │ 96\.0 KiB each", text)
     for kernel in ("particles_to_grid", "update_grid", "grid_to_particles"):
         assert len(re.findall(rf"{kernel} │ 7 │ \d+\.\d+ │ \d+\.\d+", text)) == 3
-    assert re.search(r"drift │ Drift │ │ │ run │ 14 │ \d+\.\d+", text)
+    assert re.search(r"drift │ Drift │ │ │ move │ 14 │ \d+\.\d+", text)
     for absent in ("damage_root", "acceleration", "BarnesHut", "Fracture"):
         assert absent not in text
     assert [path.name for path in tmp_path.iterdir()] == ["column.json"]
