@@ -243,7 +243,7 @@ class Drift:
     def move(self):
         """Move all particles, unless the clock has paused."""
         half = 0.5 * self.clock.dt[None]
-        for p in range(self.particles.count * self.clock.running[None]):
+        for p in range(self.particles.number[None] * self.clock.running[None]):
             C = self.particles.C[p]
             after = affine_velocity(C, half, self.scheme.response.constitution.expansion(p), self.scheme.steepest[None])
             self.particles.C[p] = after

@@ -1,16 +1,15 @@
 """The nodes of every particle: where they lie in memory, their weights, and the sums over them.
 
-Each block of particles has its own copy of the nodes that it reaches (engine/mpm/blocks.py), so on the CPU no two
+Each block of particles has its own copy of the nodes that it reaches (engine/mpm/tiles.py), so on the CPU no two
 threads ever add to the same number, and on a GPU every node is summed by one: results do not depend on their count.
 """
 
-import numpy as np
 import taichi as ti
 
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import EPSILON, Real, mat3, on_gpu, vec3, vec4
-from engine.device.fields import allocate, capacity, overwrite
-from engine.mpm.blocks import Blocks
+from engine.device.fields import allocate, capacity
+from engine.mpm.block_coordinates import corner_of
 from engine.mpm.spline import SECOND_MOMENT, WIDTH, first_moments, spline_weights, sum_of_squares
 from engine.state.particles import Particles
 
@@ -46,6 +45,10 @@ class Stencil:
 
     Attributes:
         by_node: whether a thread sums one node over the particles of its block, as on a GPU, or all nodes of a block.
+        origin, first, body_of_block: coordinates of every block, its first particle, and its velocity field.
+        source: of every tile, the eight blocks whose copies hold it, or -1.
+        body: velocity field of every tile.
+        site: first tile of every site; those of all velocity fields there follow.
         nodes: every node of every copy; momentum [kg m/s] and mass [kg] after the scatter, velocity [m/s] and mass
             after the grid update.
         shared_count: particles whose block, or one beside it, contains others; they come first in memory.
@@ -61,24 +64,14 @@ class Stencil:
         self.owner = allocate(ti.i32, particles.x.shape)
         self.origin = allocate(ti.types.vector(3, ti.i32), self.capacity)
         self.first = allocate(ti.i32, self.capacity + 1)
+        self.body_of_block = allocate(ti.i32, self.capacity)
         self.source = allocate(ti.i32, (8 * self.capacity, 8))
         self.body, self.site = allocate(ti.i32, 8 * self.capacity), allocate(ti.i32, 8 * self.capacity + 1)
         self.nodes = allocate(vec4, self.capacity * COPY)
 
-    def set_blocks(self, blocks: Blocks) -> None:
-        """Store newly built blocks, in whose order the particles lie; there must be room for them."""
-        shared = int(blocks.first[-1])
-        counts = (self.block_count, self.site_count, self.shared_count, self.ballistic_count)
-        sizes = (len(blocks.origin), len(blocks.site) - 1, shared, len(blocks.order) - shared)
-        for field, size in zip(counts, sizes, strict=True):
-            field[None] = size
-        owner = np.repeat(np.arange(len(blocks.origin), dtype=np.int32), np.diff(blocks.first))
-        overwrite(self.owner, owner)
-        overwrite(self.origin, blocks.origin)
-        overwrite(self.first, blocks.first)
-        overwrite(self.source, blocks.source)
-        overwrite(self.body, blocks.body)
-        overwrite(self.site, blocks.site)
+    def set_counts(self, blocks: int, shared: int, ballistic: int) -> None:
+        """Set the numbers of blocks, of the particles in them, and of others."""
+        self.block_count[None], self.shared_count[None], self.ballistic_count[None] = blocks, shared, ballistic
 
     @ti.func
     def lowest_node(self, p):
@@ -218,7 +211,7 @@ class Stencil:
         for corner in range(8):
             b = self.source[tile, corner]
             if b >= 0:
-                first = BLOCK_EDGE * (self.origin[b] + corner_coordinates(corner)) - MARGIN
+                first = BLOCK_EDGE * (self.origin[b] + corner_of(corner)) - MARGIN
         return self.dx[None] * ti.cast(first + node, ti.f64)
 
 
@@ -251,15 +244,9 @@ def in_copy_coordinates(n):
 
 
 @ti.func
-def corner_coordinates(corner):
-    """Return the coordinates, 0 or 1, of one of the eight corners of a cube."""
-    return ti.Vector([corner >> 2, (corner >> 1) & 1, corner & 1])
-
-
-@ti.func
 def corner_offset(corner):
     """Return the index of the first node of a tile in the copy of the block at one of its corners."""
-    return in_copy(BLOCK_EDGE * corner_coordinates(corner))
+    return in_copy(BLOCK_EDGE * corner_of(corner))
 
 
 @ti.func

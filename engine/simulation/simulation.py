@@ -7,14 +7,16 @@ from dataclasses import asdict, dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.arrays import Scalars, Vectors
+from engine.arrays import Scalars
 from engine.constants import BLOCK_EDGE
 from engine.device.backend import require_precision
 from engine.errors import SMALLER_STEPS, stop
 from engine.gravity.self_gravity import SelfGravity
-from engine.mpm.blocks import HALF_RANGE, block_of, build_blocks, out_of_range, wrap
+from engine.mpm.block_coordinates import HALF_RANGE
+from engine.mpm.blocks import Blocks
 from engine.mpm.response import Response
 from engine.mpm.stencil import Stencil
+from engine.mpm.tiles import Tiles
 from engine.mpm.time_step import first_rate
 from engine.mpm.transfer import Transfer
 from engine.scene.scene import Scene
@@ -72,6 +74,8 @@ class Simulation:
         self.response = Response(self.particles, self.constitution, self.gravity, self.walls, self.clock, scene.dx)
         self.scheme = assembly.scheme(scene, self.response)
         self.contact = assembly.contact(scene)
+        self.blocks = Blocks(self.particles, scene.dx, scene.period_blocks, scene.separates_bodies)
+        self.tiles = Tiles(self.blocks)
         self._make_room(scene.particles // 8)
         self.events = Events(gravity_due=scene.start_time if physics.gravity else math.inf)
 
@@ -124,13 +128,8 @@ class Simulation:
         Raises:
             GuardFault: a particle is beyond the range of block coordinates.
         """
-        x = self.particles.read("x")["x"]
-        self._require_in_range(x)
-        block = block_of(x, self.scene.dx)
-        if any(self.scene.period):
-            x, block = wrap(x, block, self.scene.dx, self.scene.period_blocks)
-            self.particles.write({"x": x})
-        self.particles.write({"origin": block})
+        if not self.blocks.find():
+            self._stop_beyond_range()
         self._build_blocks()
 
     def clock_state(self) -> dict[str, float | int]:
@@ -151,13 +150,11 @@ class Simulation:
 
     def _build_blocks(self) -> None:
         """Build the blocks from where the particles were when blocks were last built."""
-        state = self.particles.read("origin", "body")
-        body = state["body"] if self.scene.separates_bodies else np.zeros_like(state["body"])
-        blocks = build_blocks(state["origin"], body, self.scene.period_blocks)
-        if len(blocks.origin) > self.stencil.capacity:
-            self._make_room(2 * len(blocks.origin))
-        self.particles.sort(blocks.order)
-        self.stencil.set_blocks(blocks)
+        blocks, alone = self.blocks.sort()
+        if blocks > self.stencil.capacity:
+            self._make_room(2 * blocks)
+        self.blocks.write(self.stencil, blocks, alone)
+        self.tiles.write(self.stencil)
         self.clock.moved_out[None] = 0
 
     def _make_room(self, blocks: int) -> None:
@@ -204,12 +201,11 @@ class Simulation:
             j = float(self.particles.read("j")["j"][p])
             raise stop("det F", 1.0 + j, "above 0", self.time, p, advice=SMALLER_STEPS)
 
-    def _require_in_range(self, x: Vectors) -> None:
-        far = out_of_range(x, self.scene.dx)
-        if far.any():
-            p, largest = int(np.argmax(far)), BLOCK_EDGE * HALF_RANGE * self.scene.dx
-            distance, advice = float(np.abs(x[p]).max()), "end the run earlier, or make cells larger"
-            raise stop("coordinate [m]", distance, f"below {largest:.3g}", self.time, p, advice=advice)
+    def _stop_beyond_range(self) -> None:
+        x = np.abs(self.particles.read("x")["x"]).max(axis=1)
+        p, largest = int(np.argmax(x)), BLOCK_EDGE * HALF_RANGE * self.scene.dx
+        advice = "end the run earlier, or make cells larger"
+        raise stop("coordinate [m]", float(x[p]), f"below {largest:.3g}", self.time, p, advice=advice)
 
     def totals(self, state: Arrays | None = None) -> Totals:
         """Return the conserved quantities at the present time.

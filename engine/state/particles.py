@@ -45,13 +45,14 @@ class Particles:
     Laws and gravity allocate what they store by `require`. A quantity without a field is zero: it is read as zeros, and
     nothing else can be written to it.
 
-    On the device particles lie in the order of the last `sort`, so that those of a block are contiguous in memory. The
+    On the device those of a block are contiguous in memory. The
     order of the arrays that `read` returns and `write` takes is that of the scene and never changes.
 
     Args:
         count: number of particles.
 
     Attributes:
+        number: of particles, on the device: kernels are the same for any.
         x, v: position [m] and velocity [m/s].
         C: affine velocity matrix [1/s].
         j: J - 1 [-], with J = det F = rho0/rho.
@@ -68,7 +69,7 @@ class Particles:
         plastic_dilation: J_c - 1 [-], with the J_c = rho0/rho above which broken rock bears no pressure.
         acceleration: by self-gravity [m/s^2].
         index: number in the scene of the particle at each index of the device.
-        order: the same on the host, shape [particle_count].
+        listed: these numbers body by body.
     """
 
     x: ti.Field
@@ -81,9 +82,11 @@ class Particles:
     origin: ti.Field
 
     def __init__(self, count: int) -> None:
-        self.count = count
-        self.index = allocate(ti.i32, capacity(count))
-        self._number(np.arange(count, dtype=np.int32))
+        self.count, self.number = count, allocate(ti.i32)
+        self.number[None] = count
+        self.index, self.listed = (allocate(ti.i32, capacity(count)) for _ in range(2))
+        for field in (self.index, self.listed):
+            overwrite(field, np.arange(count, dtype=np.int32))
         for name in CORE_FIELDS:
             self.require(name)
 
@@ -100,7 +103,8 @@ class Particles:
 
     def read(self, *names: str) -> Arrays:
         """Return copies of the named quantities, of all when none is named, shape [particle_count, ...]."""
-        return {name: self._values(name) for name in names or FIELD_TYPES}
+        order = self.order
+        return {name: self._values(name, order) for name in names or FIELD_TYPES}
 
     def write(self, arrays: Arrays) -> None:
         """Overwrite quantities of all particles.
@@ -111,32 +115,30 @@ class Particles:
         Raises:
             ValueError: a quantity without a field would not be zero.
         """
+        order = self.order
+        if "body" in arrays:
+            overwrite(self.listed, np.argsort(arrays["body"], kind="stable"))
         for name, values in arrays.items():
             if name in self.allocated:
-                overwrite(getattr(self, name), values[self.order])
+                overwrite(getattr(self, name), values[order])
             elif np.any(values):
                 raise ValueError(f"no part of the scene holds '{name}': it can only be zero")
 
-    def sort(self, order: Indices) -> None:
-        """Move all particles on the device.
+    @property
+    def order(self) -> Indices:
+        """Number in the scene of the particle at each index of the device, shape [particle_count]."""
+        return np.asarray(self.index.to_numpy()[: self.count])
 
-        Args:
-            order: number in the scene of the particle that each index of the device receives, shape [particle_count].
-        """
-        source = np.argsort(self.order)[order]
-        for field in (getattr(self, name) for name in self.allocated):
-            overwrite(field, field.to_numpy()[source])
-        self._number(order)
+    @property
+    def fields(self) -> list[ti.Field]:
+        """Fields that move with the particles: the index, and all quantities that have one."""
+        return [self.index, *(getattr(self, name) for name in self.allocated)]
 
-    def _number(self, order: Indices) -> None:
-        self.order = order
-        overwrite(self.index, order)
-
-    def _values(self, name: str) -> NDArray[Any]:
+    def _values(self, name: str, order: Indices) -> NDArray[Any]:
         if name in self.allocated:
             values = getattr(self, name).to_numpy()[: self.count]
             result = np.empty(values.shape, np.float64 if values.dtype.kind == "f" else values.dtype)
-            result[self.order] = values
+            result[order] = values
             return result
         kind = FIELD_TYPES[name]
         return np.zeros((self.count, *(kind.get_shape() if hasattr(kind, "get_shape") else ())))

@@ -11,6 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from engine.device.backend import Real, mat3, vec3, vec6
 from engine.device.fields import allocate, capacity, overwrite
+from engine.device.permutation import Permutation
+from engine.state.particles import Particles
 
 Array = NDArray[Any]
 Shape = tuple[int, ...]
@@ -87,3 +89,13 @@ def _record(inputs: int, error: float) -> None:
     test = os.environ["PYTEST_CURRENT_TEST"].split("[")[0].split(" ")[0]
     before, largest = COMPARED.get(test, (0, 0.0))
     COMPARED[test] = (before + inputs, max(largest, error))
+
+
+def moved(particles: Particles, generator: np.random.Generator) -> Array:
+    """Move particles at random on the device; returns the number in the scene of each."""
+    permutation = Permutation(particles.fields, capacity(particles.count))
+    source = generator.permutation(particles.count)
+    order = particles.order[source]
+    overwrite(permutation.source, source)
+    permutation.apply(particles.count)
+    return order

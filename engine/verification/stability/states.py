@@ -4,7 +4,7 @@ import numpy as np
 
 from engine.arrays import Scalars
 from engine.constants import BLOCK_EDGE
-from engine.mpm.blocks import HALF_RANGE
+from engine.mpm.block_coordinates import HALF_RANGE
 from engine.scene.scene import Scene
 from engine.simulation.initial_conditions import initial_state
 from engine.state.particles import Arrays

@@ -6,7 +6,7 @@ from engine.laws.damage import Damage
 from engine.laws.fracture import Unbreakable
 from engine.profile.parts import parts_of
 from engine.state.particles import Particles
-from tests.helpers.device import evaluate
+from tests.helpers.device import evaluate, moved
 from tests.helpers.scenes import advance, body, scene, started
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -46,7 +46,7 @@ def test_growth_knows_particles_by_their_number_in_the_scene() -> None:
     """The flaws of a particle are its own wherever it lies on the device."""
     particles = Particles(20)
     law = Damage(particles, ByNumber())
-    particles.sort(np.random.default_rng(1).permutation(20).astype(np.int32))
+    moved(particles, np.random.default_rng(1))
     Step(law).take(20)
     assert np.array_equal(particles.read("damage_root")["damage_root"], np.arange(20))
 
