@@ -1,9 +1,7 @@
 """Gravity as a sum over all pairs, exact to round-off; the reference for the tree (engine/physics.md, section 7)."""
 
-import numpy as np
 import taichi as ti
 
-from engine.arrays import Indices, Vectors
 from engine.device.backend import TASK, on_gpu
 from engine.gravity.self_gravity import LANES, SelfGravity
 from engine.state.particles import Particles
@@ -17,9 +15,17 @@ class DirectSum(SelfGravity):
         super().__init__(particles, radius, -(-particles.count // LANES) * LANES)
         self.task = 1 if on_gpu() else TASK
 
-    def arrange(self, x: Vectors) -> Indices:
-        """Return the particles in their own order, and padding up to a whole row; shapes as `SelfGravity.arrange`."""
-        return np.concatenate([np.arange(len(x)), np.full(-len(x) % LANES, ~0)])
+    def arrange(self) -> None:
+        """Keep the particles in their order, and fill up to a whole row."""
+        self.fill_rows(self.count, self.slots)
+
+    @ti.kernel
+    def fill_rows(self, count: ti.i32, slots: ti.i32):
+        """Set the particle of every slot."""
+        for s in range(slots):
+            self.particle_of[s] = s
+            if s >= count:
+                self.particle_of[s] = ~0
 
     def solve(self, potential: bool) -> None:
         """Sum over all pairs, sources always in the same order; argument as `SelfGravity.solve`."""

@@ -10,10 +10,10 @@ import math
 import numpy as np
 import taichi as ti
 
-from engine.arrays import Indices, Vectors
-from engine.device.backend import Real, mat3, vec3, vec4, vec6
-from engine.device.fields import allocate, capacity
+from engine.device.backend import Real, mat3, on_gpu, vec3, vec4, vec6
+from engine.device.fields import allocate, capacity, overwrite
 from engine.device.tensors import identity, pack, unpack
+from engine.gravity.device_partition import DevicePartition
 from engine.gravity.median_partition import median_order
 from engine.gravity.self_gravity import LANES, SelfGravity
 from engine.state.particles import Particles
@@ -37,6 +37,7 @@ class Multipoles(SelfGravity):
         depth: levels below the root; the tree has 2^depth leaves.
         size: particles in a leaf, copies included.
         room: slots of a leaf, `size` filled up to whole rows.
+        leaves: sorts the particles on a GPU; on a CPU the host does.
         lower, upper: corners of the box of every node.
         centre: centre of mass of every node, and its gm as fourth component.
         quadrupole: traceless quadrupole of every node, packed.
@@ -47,6 +48,7 @@ class Multipoles(SelfGravity):
         self.depth, self.size = _shape(particles.count)
         self.room = -(-self.size // LANES) * LANES
         super().__init__(particles, radius, self.room << self.depth)
+        self.leaves = DevicePartition(particles.count, self.depth, self.size) if on_gpu() else None
         self.opening = allocate(Real)
         self.opening[None] = opening
         shape = capacity(2 << self.depth)
@@ -54,11 +56,15 @@ class Multipoles(SelfGravity):
         self.centre, self.quadrupole = allocate(vec4, shape), allocate(vec6, shape)
         self.nearest = allocate(Real, shape)
 
-    def arrange(self, x: Vectors) -> Indices:
-        """Return the particles leaf by leaf, each leaf padded to whole rows; shapes as `SelfGravity.arrange`."""
-        leaves = median_order(x, self.depth, self.size)
-        padding = np.minimum(leaves[:, :1], ~leaves[:, :1])
-        return np.concatenate([leaves, padding.repeat(self.room - self.size, axis=1)], axis=1).ravel()
+    def arrange(self) -> None:
+        """Sort the particles into leaves, each padded to whole rows."""
+        if self.leaves:
+            self.leaves.partition(self.position)
+            self.leaves.write(self.particle_of, self.room)
+        else:
+            leaves = median_order(self.position.to_numpy()[: self.count], self.depth, self.size)
+            padding = np.minimum(leaves[:, :1], ~leaves[:, :1]).repeat(self.room - self.size, axis=1)
+            overwrite(self.particle_of, np.concatenate([leaves, padding], axis=1).ravel())
 
     def build(self) -> None:
         """Compute all nodes, from the leaves up."""

@@ -5,11 +5,11 @@ from abc import ABC, abstractmethod
 import numpy as np
 import taichi as ti
 
-from engine.arrays import Indices, Scalars, Vectors
+from engine.arrays import Scalars, Vectors
 from engine.constants import G_NEWTON
-from engine.device.backend import Real, on_gpu
+from engine.device.backend import Real, on_gpu, place3
 from engine.device.fields import allocate, capacity, overwrite
-from engine.gravity.net_force import NetForce, remove_net_force_and_torque
+from engine.gravity.net_force import NetForce, RigidCorrection
 from engine.state.particles import Particles
 
 LANES = 8
@@ -33,6 +33,9 @@ class SelfGravity(ABC):
         slots: number of sources that the solver stores, particles and padding; a multiple of LANES.
 
     Attributes:
+        position, mass: of every particle when gravity is computed [m, kg].
+        pull: acceleration [m/s^2] that the solver finds for every particle; potential [J/kg] as first component.
+        particle_of: particle in every slot; ~p marks padding, without mass, at the position of particle p.
         x, y, z: positions in the solver's order, shape [slots].
         gm: G_NEWTON times mass in the solver's order, 0 for padding, shape [slots].
         radius: radius of the ball, in the unit of the positions.
@@ -41,8 +44,12 @@ class SelfGravity(ABC):
     """
 
     def __init__(self, particles: Particles, radius: float, slots: int) -> None:
-        self.particles, self.count = particles, particles.count
+        self.particles, self.count, self.slots = particles, particles.count, slots
         self.acceleration = particles.require("acceleration")
+        self.position, self.pull = (allocate(place3, capacity(self.count)) for _ in range(2))
+        self.mass, self.particle_of = allocate(ti.f64, capacity(self.count)), allocate(ti.i32, capacity(slots))
+        self.extent, self.largest_mass = allocate(ti.f64), allocate(ti.f64)
+        self.correction = RigidCorrection(self.position, self.mass, self.pull, self.acceleration, self.count)
         self.ball, self.radius = radius, allocate(Real)
         shape = capacity(slots)
         self.x, self.y, self.z, self.gm = (allocate(Real, shape) for _ in range(4))
@@ -51,15 +58,8 @@ class SelfGravity(ABC):
         self.row = ti.types.vector(self.lanes, Real)
 
     @abstractmethod
-    def arrange(self, x: Vectors) -> Indices:
-        """Return the particle in each slot; ~p marks padding, without mass, at the position of particle p.
-
-        Args:
-            x: positions [m], shape [particle_count, 3].
-
-        Returns:
-            Shape [slots].
-        """
+    def arrange(self) -> None:
+        """Set `particle_of` every slot: index of a particle, or ~p for padding, without mass, at that of particle p."""
 
     @abstractmethod
     def solve(self, potential: bool) -> None:
@@ -78,11 +78,9 @@ class SelfGravity(ABC):
         Returns:
             The net force and torque that were removed.
         """
-        state = self.particles.read("x", "v", "mass")
-        x, mass = state["x"] + ahead * state["v"], state["mass"]
-        acceleration, removed = remove_net_force_and_torque(self.accelerations(x, mass), x, mass)
-        self.particles.write({"acceleration": acceleration})
-        return removed
+        self.take_particles(ahead, self.count)
+        self._evaluate(potential=False)
+        return self.correction.apply()
 
     def accelerations(self, x: Vectors, mass: Scalars) -> Vectors:
         """Return the solver's accelerations [m/s^2], shape [particle_count, 3].
@@ -91,31 +89,73 @@ class SelfGravity(ABC):
             x: positions [m], shape [particle_count, 3].
             mass: masses [kg], shape [particle_count].
         """
-        return self._evaluate(x, mass, self.ax, self.ay, self.az)
+        self._place(x, mass)
+        self._evaluate(potential=False)
+        return np.asarray(self.pull.to_numpy()[: self.count])
 
     def potentials(self, x: Vectors, mass: Scalars) -> Scalars:
         """Return the potential [J/kg] of all others at each particle, shape [particle_count]; arguments as above."""
-        return self._evaluate(x, mass, self.potential)[:, 0]
+        self._place(x, mass)
+        self._evaluate(potential=True)
+        return np.asarray(self.pull.to_numpy()[: self.count, 0])
 
     def energy(self, x: Vectors, mass: Scalars) -> float:
         """Return half the sum of mass times potential [J]; arguments as above."""
         return 0.5 * float(np.sum(mass * self.potentials(x, mass)))
 
-    def _evaluate(self, x: Vectors, mass: Scalars, *wanted: ti.Field) -> Vectors:
-        """Wanted results of a solution in SI units, shape [particle_count, number of results]."""
-        slots = self.arrange(x)
-        taken = slots >= 0
-        particle = np.where(taken, slots, ~slots)
-        length, gm = _power_of_two(np.abs(x).max()), _power_of_two(G_NEWTON * mass.max())
-        sources = (*(x[particle] / length).T, np.where(taken, G_NEWTON * mass[particle] / gm, 0.0))
+    def _place(self, x: Vectors, mass: Scalars) -> None:
+        overwrite(self.position, x)
+        overwrite(self.mass, mass)
+
+    def _evaluate(self, potential: bool) -> None:
+        """Set the pull to a solution in SI units for the present positions and masses."""
+        self.find_extent(self.count)
+        length = _power_of_two(self.extent[None])
+        gm = _power_of_two(G_NEWTON * self.largest_mass[None])
+        self.arrange()
         self.radius[None] = self.ball / length
-        for field, values in zip((self.x, self.y, self.z, self.gm), sources, strict=True):
-            overwrite(field, values)
-        self.solve(potential=self.potential in wanted)
-        slot_of = np.empty(self.count, dtype=np.int64)
-        slot_of[particle[taken]] = np.flatnonzero(taken)
-        unit = gm / length if self.potential in wanted else gm / length**2
-        return unit * np.stack([field.to_numpy()[slot_of] for field in wanted], axis=1, dtype=np.float64)
+        self.fill_slots(self.slots, length, gm)
+        self.solve(potential)
+        unit = gm / length if potential else gm / length**2
+        self.take_results(self.slots, unit, potential)
+
+    @ti.kernel
+    def take_particles(self, ahead: ti.f64, count: ti.i32):
+        """Take the positions of the particles some time [s] ahead, and their masses."""
+        for p in range(count):
+            self.position[p] = self.particles.x[p] + ahead * ti.cast(self.particles.v[p], ti.f64)
+            self.mass[p] = ti.cast(self.particles.mass[p], ti.f64)
+
+    @ti.kernel
+    def find_extent(self, count: ti.i32):
+        """Find the largest coordinate and the largest mass."""
+        self.extent[None], self.largest_mass[None] = 0.0, 0.0
+        for p in range(count):
+            ti.atomic_max(self.extent[None], ti.abs(self.position[p]).max())
+            ti.atomic_max(self.largest_mass[None], self.mass[p])
+
+    @ti.kernel
+    def fill_slots(self, slots: ti.i32, length: ti.f64, gm: ti.f64):
+        """Set positions and masses of all slots, in units of a length [m] and a product of G and a mass [m^3/s^2]."""
+        for s in range(slots):
+            value = self.particle_of[s]
+            p = ti.max(value, ~value)
+            x = ti.cast(self.position[p] / length, Real)
+            self.x[s], self.y[s], self.z[s] = x[0], x[1], x[2]
+            self.gm[s] = 0.0
+            if value >= 0:
+                self.gm[s] = ti.cast(G_NEWTON * self.mass[p] / gm, Real)
+
+    @ti.kernel
+    def take_results(self, slots: ti.i32, unit: ti.f64, potential: ti.template()):
+        """Set the pull of every particle to what its slot has, in units of `unit`; a potential as first component."""
+        for s in range(slots):
+            p = self.particle_of[s]
+            if p >= 0:
+                if ti.static(potential):
+                    self.pull[p] = unit * place3(self.potential[s], 0.0, 0.0)
+                else:
+                    self.pull[p] = unit * place3(self.ax[s], self.ay[s], self.az[s])
 
     @ti.func
     def at(self, p):

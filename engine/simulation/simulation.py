@@ -170,12 +170,9 @@ class Simulation:
     def _update_gravity(self) -> None:
         assert isinstance(self.gravity, SelfGravity) and self.scene.physics.gravity
         interval, dt = self.scene.physics.gravity.interval, self.next_dt
-        before = self.particles.read("acceleration")["acceleration"]
         # mean time of the kicks that will use it: a step kicks from where particles are when it begins
         removed = self.gravity.accelerate(ahead=0.5 * dt * (math.ceil(interval / dt) - 1))
-        after = self.particles.read("acceleration")["acceleration"]
-        change = float(np.linalg.norm(after - before)) / max(float(np.linalg.norm(after)), 1e-300)
-        self.events = Events(self.time + interval, change, removed.force, removed.torque)
+        self.events = Events(self.time + interval, removed.change, removed.force, removed.torque)
 
     def _launch(self, most: int) -> None:
         left = self.clock.pause_time[None] - self.time

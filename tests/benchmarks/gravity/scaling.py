@@ -22,7 +22,7 @@ def measure(count: int) -> dict[str, Any]:
     watches = {"arrange": Stopwatch(), "solve": Stopwatch(), "accelerate": Stopwatch()}
     for _ in range(LAPS):
         with watches["arrange"].lap():
-            tree.arrange(state.x)
+            tree.arrange()
         with watches["solve"].lap():
             tree.solve(potential=False)
             backend.ti.sync()
