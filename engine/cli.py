@@ -16,7 +16,16 @@ import typer
 from rich.console import Console, RenderableType
 
 from engine.device.options import Arch, choose
-from engine.errors import ExitCode, JobBusyError, JobError, RunFault, SceneError, in_words
+from engine.errors import (
+    MEMORY_IS_FULL,
+    ExitCode,
+    JobBusyError,
+    JobError,
+    RunFault,
+    SceneError,
+    in_words,
+    is_out_of_memory,
+)
 from engine.job.directory import JobDirectory, JobState, Status
 from engine.scene.input_errors import did_you_mean
 from engine.scene.scene import Scene, scene_at, scene_in
@@ -195,6 +204,10 @@ def _errors_as_exit_codes(source: Path) -> Iterator[None]:
         _exit(str(error), ExitCode.BAD_INPUT)
     except RunFault as fault:
         _exit(f"{source}: {fault}", ExitCode.FAILED)
+    except RuntimeError as error:
+        if not is_out_of_memory(error):
+            raise
+        _exit(f"{source}: {MEMORY_IS_FULL}", ExitCode.FAILED)
 
 
 def _require_known(names: Sequence[str] | None, known: Collection[str], what: str) -> None:

@@ -42,6 +42,19 @@ def in_words(error: OSError, path: object = "") -> str:
     return f"{where}: {error.strerror or error}" if where else f"{error.strerror or error}"
 
 
+MEMORY_IS_FULL = (
+    "the memory of the device is full: run fewer jobs on it at once, or a scene with fewer particles or "
+    'numerics.precision = "f32"; python -m engine explain SCENE shows what a scene takes'
+)
+"""What a user reads when a device has no room for a scene."""
+
+
+def is_out_of_memory(error: Exception) -> bool:
+    """Return whether an error of Taichi means that the device has no memory left."""
+    words = ("failed to allocate", "out of memory", "out_of_memory")
+    return isinstance(error, RuntimeError) and any(word in str(error).lower() for word in words)
+
+
 class RunFault(RuntimeError):
     """A state is outside the range in which the equations are valid."""
 

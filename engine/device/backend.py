@@ -105,6 +105,11 @@ def require_precision(precision: str) -> None:
         )
 
 
+def architecture() -> str:
+    """Return where kernels run: `cpu`, `cuda` or `vulkan`."""
+    return "cpu" if not on_gpu() else str(current_cfg().arch).removeprefix("Arch.")
+
+
 def on_gpu() -> bool:
     """Return whether kernels run on a GPU."""
     return bool(current_cfg().arch != ti.cpu)

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import platform
 import socket
 import subprocess
@@ -16,6 +17,9 @@ from engine.job.directory import JobDirectory
 from engine.job.storage import write_json
 from engine.scene.scene import Scene
 
+DEVICES = ("CUDA_VISIBLE_DEVICES", "TI_VISIBLE_DEVICE")
+"""Environment variables that choose among several GPUs."""
+
 PACKAGES = ("asteroid-collisions", "taichi", "numpy", "scipy", "xarray", "netCDF4", "pydantic")
 
 
@@ -25,7 +29,7 @@ def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> 
     Args:
         job: the job directory.
         scene: what is run.
-        arch: `cpu`, `cuda`, `vulkan` or `gpu`.
+        arch: `cpu`, `cuda` or `vulkan`.
         threads: CPU threads.
 
     Raises:
@@ -57,6 +61,7 @@ def _session(arch: str, threads: int) -> dict[str, object]:
         "python": platform.python_version(),
         "packages": {name: _version(name) for name in PACKAGES},
         "arch": arch,
+        "devices": {name: os.environ[name] for name in DEVICES if name in os.environ},
         "threads": threads,
         "precision": str(Real),
         "git": _git_state(),

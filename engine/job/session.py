@@ -15,7 +15,7 @@ from xarray import Dataset
 
 from engine import PHYSICS_VERSION
 from engine.device import backend
-from engine.errors import Fault, GuardFault, JobError, SceneError
+from engine.errors import MEMORY_IS_FULL, Fault, GuardFault, JobError, SceneError, is_out_of_memory
 from engine.job.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
 from engine.job.directory import HEARTBEAT_PERIOD, JobDirectory, JobState, Status
 from engine.job.history import History
@@ -81,7 +81,7 @@ def run_job(directory: Path, options: Options) -> Status:
 def _leave_word(job: JobDirectory, error: Exception) -> None:
     """Write an unexpected error to log and status, unless the disk is full."""
     log.exception("ended by an error")
-    reason = " ".join(f"{type(error).__name__}: {error}".split())
+    reason = MEMORY_IS_FULL if is_out_of_memory(error) else " ".join(f"{type(error).__name__}: {error}".split())
     with suppress(OSError):
         job.write_status(replace(job.status(), state=JobState.INTERRUPTED, reason=reason))
 
@@ -144,7 +144,7 @@ class Session:
             log.info("resumed at t = %.6g s, step %d", self.simulation.time, self.simulation.step)
         first = self.history.rows[0] if self.history.rows else self._row(self.simulation.particles.read())
         self.guard = Guard(self.scene, first, self.simulation.first_dt)
-        record_session(self.job, self.scene, self.options.arch, self.options.threads)
+        record_session(self.job, self.scene, backend.architecture(), self.options.threads)
         self._write_outputs()
         self._report(JobState.RUNNING)
 

@@ -1,12 +1,15 @@
 """Tests on a Vulkan device, which tests/engine/device/test_gpu.py runs in processes of their own."""
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
+from taichi import MatrixField, ScalarField
 
 from engine.device import backend, elementary
 from engine.device.backend import PRECISION
+from engine.mpm.blocks import Blocks
 from engine.scene.collision import Collision
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
@@ -127,6 +130,31 @@ def test_a_scene_is_that_of_the_cpu(given: Callable[[], Scene]) -> None:
     for name, values in cpu.items():
         assert np.abs(gpu[name] - values).max() <= ROUND_OFF * np.abs(values).max(), name
     assert other_ledger.total_energy == pytest.approx(ledger.total_energy, rel=ROUND_OFF)
+
+
+def test_nothing_but_scalars_crosses_between_outputs(device: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps, sorting into blocks and gravity move no field of particles between device and host."""
+    simulation, crossed, sorts = started(collision()), [], []
+    first = simulation.events.gravity_due
+    for kind in (ScalarField, MatrixField):
+        for name in ("to_numpy", "from_numpy"):
+            monkeypatch.setattr(kind, name, recorded(getattr(kind, name), crossed))
+    monkeypatch.setattr(Blocks, "write", recorded(Blocks.write, sorts))
+    after_steps(simulation, 3 * STEPS)
+    assert sorts and simulation.events.gravity_due > first + simulation.scene.physics.gravity.interval
+    assert [field.shape for field in crossed if field.shape != ()] == []
+    simulation.particles.read("mass")
+    assert crossed[-1].shape != (), "what crosses is seen"
+
+
+def recorded(method: Callable[..., Any], calls: list[Any]) -> Callable[..., Any]:
+    """A method that adds its object to a list."""
+
+    def call(self: Any, *given: Any, **named: Any) -> Any:
+        calls.append(self)
+        return method(self, *given, **named)
+
+    return call
 
 
 def test_the_same_run_has_the_same_bits_and_so_has_a_restart(device: None) -> None:

@@ -20,11 +20,14 @@ def recorded(directory: Path) -> dict[str, object]:
 
 def test_a_session_names_scene_command_packages_and_device(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["engine", "run", "here"])
+    monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "3")
+    monkeypatch.delenv("TI_VISIBLE_DEVICE", raising=False)
     record_session(JobDirectory(tmp_path), SCENE, "cpu", 3)
     content = recorded(tmp_path)
     assert (content["physics_version"], content["scene_hash"], content["seed"]) == (PHYSICS_VERSION, SCENE.hash(), 7)
     (session,) = content["sessions"]
     assert (session["command"], session["arch"], session["threads"]) == (["engine", "run", "here"], "cpu", 3)
+    assert session["devices"] == {"CUDA_VISIBLE_DEVICES": "3"}
     assert session["precision"] == "f64" and set(session["packages"]) == set(PACKAGES)
     assert session["packages"]["taichi"].startswith("1.7") and session["git"]["commit"]
 
