@@ -38,6 +38,11 @@ def allocate(kind: Any, shape: int | tuple[int, ...] = ()) -> ti.Field:
     return make(shape=(first + first % 2, *others))
 
 
+def rank(field: ti.Field) -> int:
+    """Return the number of indices of a component of an entry: 0 of a scalar, 1 of a vector, 2 of a matrix."""
+    return int(getattr(field, "ndim", 0))
+
+
 def filled(dtype: Any, values: NDArray[np.generic]) -> ti.Field:
     """Return a one-dimensional field that begins with given values; the rest is zero.
 

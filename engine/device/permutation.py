@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import taichi as ti
 
-from engine.device.fields import allocate
+from engine.device.fields import allocate, rank
 
 MOST_COMPONENTS = 9
 
@@ -39,9 +39,9 @@ class Permutation:
     def keep(self, field: ti.template(), p):
         """Copy the entry that index p receives."""
         entry = field[self.source[p]]
-        if ti.static(_rank(field) == 0):
+        if ti.static(rank(field) == 0):
             self.moved[p, 0] = ti.cast(entry, ti.f64)
-        elif ti.static(_rank(field) == 1):
+        elif ti.static(rank(field) == 1):
             for i in ti.static(range(field.n)):
                 self.moved[p, i] = ti.cast(entry[i], ti.f64)
         else:
@@ -51,16 +51,11 @@ class Permutation:
     @ti.func
     def receive(self, field: ti.template(), p):
         """Set the entry at index p to its copy."""
-        if ti.static(_rank(field) == 0):
+        if ti.static(rank(field) == 0):
             field[p] = ti.cast(self.moved[p, 0], field.dtype)
-        elif ti.static(_rank(field) == 1):
+        elif ti.static(rank(field) == 1):
             for i in ti.static(range(field.n)):
                 field[p][i] = ti.cast(self.moved[p, i], field.dtype)
         else:
             for i, j in ti.static(ti.ndrange(field.n, field.m)):
                 field[p][i, j] = ti.cast(self.moved[p, i * field.m + j], field.dtype)
-
-
-def _rank(field: ti.Field) -> int:
-    """Number of indices of a component of an entry."""
-    return int(getattr(field, "ndim", 0))

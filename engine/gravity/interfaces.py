@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from engine.arrays import Scalars, Vectors
+from engine.arrays import Vector
 
 
 class GravityField(Protocol):
@@ -15,12 +15,11 @@ class GravityField(Protocol):
         step.
         """
 
-    def energy(self, x: Vectors, mass: Scalars) -> float:
-        """Return the potential energy [J] of all particles.
+    def energy(self, moment: Vector) -> float:
+        """Return the potential energy [J] of all particles where they are now.
 
         Called on the host between steps, for the conserved quantities.
 
         Args:
-            x: positions [m], shape [particle_count, 3].
-            mass: masses [kg], shape [particle_count].
+            moment: sum of mass times position [kg m], shape [3].
         """

@@ -5,10 +5,11 @@ from abc import ABC, abstractmethod
 import numpy as np
 import taichi as ti
 
-from engine.arrays import Scalars, Vectors
+from engine.arrays import Scalars, Vector, Vectors
 from engine.constants import G_NEWTON
 from engine.device.backend import Real, on_gpu, place3
 from engine.device.fields import allocate, capacity, overwrite
+from engine.device.fixed_order_sum import FixedOrderSum
 from engine.gravity.net_force import NetForce, RigidCorrection
 from engine.state.particles import Particles
 
@@ -49,7 +50,8 @@ class SelfGravity(ABC):
         self.position, self.pull = (allocate(place3, capacity(self.count)) for _ in range(2))
         self.mass, self.particle_of = allocate(ti.f64, capacity(self.count)), allocate(ti.i32, capacity(slots))
         self.extent, self.largest_mass = allocate(ti.f64), allocate(ti.f64)
-        self.correction = RigidCorrection(self.position, self.mass, self.pull, self.acceleration, self.count)
+        self.energy_sum = FixedOrderSum(self.mass_times_potential, 1, self.count)
+        self.rigid = RigidCorrection(self.position, self.mass, self.pull, self.acceleration, self.count)
         self.ball, self.radius = radius, allocate(Real)
         shape = capacity(slots)
         self.x, self.y, self.z, self.gm = (allocate(Real, shape) for _ in range(4))
@@ -80,7 +82,7 @@ class SelfGravity(ABC):
         """
         self.take_particles(ahead, self.count)
         self._evaluate(potential=False)
-        return self.correction.apply()
+        return self.rigid.apply()
 
     def accelerations(self, x: Vectors, mass: Scalars) -> Vectors:
         """Return the solver's accelerations [m/s^2], shape [particle_count, 3].
@@ -99,9 +101,16 @@ class SelfGravity(ABC):
         self._evaluate(potential=True)
         return np.asarray(self.pull.to_numpy()[: self.count, 0])
 
-    def energy(self, x: Vectors, mass: Scalars) -> float:
-        """Return half the sum of mass times potential [J]; arguments as above."""
-        return 0.5 * float(np.sum(mass * self.potentials(x, mass)))
+    def energy(self, moment: Vector) -> float:
+        """Return half the sum of mass times potential [J]; the argument is not used."""
+        self.take_particles(0.0, self.count)
+        self._evaluate(potential=True)
+        return 0.5 * float(self.energy_sum.over(self.count)[0])
+
+    @ti.func
+    def mass_times_potential(self, p):
+        """Return mass times potential of particle p [J]."""
+        return ti.Vector([self.mass[p] * self.pull[p][0]])
 
     def _place(self, x: Vectors, mass: Scalars) -> None:
         overwrite(self.position, x)

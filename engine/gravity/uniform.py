@@ -1,9 +1,8 @@
 """Uniform gravity, or none (engine/physics.md, section 11)."""
 
-import numpy as np
 import taichi as ti
 
-from engine.arrays import Scalars, Vectors
+from engine.arrays import Vector as Moment
 from engine.device.backend import vec3
 from engine.device.fields import allocate
 from engine.scene.fields import Vector
@@ -26,9 +25,9 @@ class UniformGravity:
         """Return the acceleration of every particle."""
         return self.acceleration[None]
 
-    def energy(self, x: Vectors, mass: Scalars) -> float:
+    def energy(self, moment: Moment) -> float:
         """Return -sum of m g.x [J], zero at the origin."""
-        return -float(np.sum(mass * (x @ self.acceleration.to_numpy())))
+        return -float(moment @ self.acceleration.to_numpy())
 
 
 @ti.data_oriented
@@ -40,6 +39,6 @@ class NoGravity:
         """Return zero."""
         return vec3(0.0)
 
-    def energy(self, x: Vectors, mass: Scalars) -> float:
+    def energy(self, moment: Moment) -> float:
         """Return zero."""
         return 0.0

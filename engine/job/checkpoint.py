@@ -10,28 +10,24 @@ from engine.job.directory import JobDirectory
 from engine.job.storage import is_finite, read_dataset, write_dataset
 from engine.scene.scene import Scene, is_hash_of
 from engine.simulation.simulation import Simulation
-from engine.state.particles import Arrays
 
 ORIGIN = ("physics_version", "scene_hash")
 """Attributes that say which runs may go on from a checkpoint."""
 
 
-def save_checkpoint(
-    job: JobDirectory, simulation: Simulation, progress: dict[str, float], state: Arrays | None = None
-) -> None:
+def save_checkpoint(job: JobDirectory, simulation: Simulation, progress: dict[str, float]) -> None:
     """Write a checkpoint and keep the one before it.
 
     Args:
         job: the job directory.
         simulation: what to save, between two calls of `advance`.
         progress: numbers that the caller needs to go on, such as the times of its next outputs [s].
-        state: all fields of the particles at this time; read from the device if `None`.
 
     Raises:
         OSError: the file cannot be written.
     """
     names = simulation.particles.allocated
-    state = simulation.particles.read(*names) if state is None else state
+    state = simulation.particles.read(*names)
     variables = {name: (_dimensions(name, state[name].ndim), state[name]) for name in names}
     origin = {"physics_version": PHYSICS_VERSION, "scene_hash": simulation.scene.hash()}
     dataset = xr.Dataset(variables, attrs={**origin, **simulation.clock_state(), **progress})

@@ -25,6 +25,7 @@ from engine.job.storage import Attributes, read_dataset, write_dataset
 from engine.scene.scene import Scene, scene_in
 from engine.simulation.conservation import Row, as_row
 from engine.simulation.guard import Guard
+from engine.simulation.ledger import Extremes
 from engine.simulation.simulation import Simulation
 from engine.state.particles import Arrays
 
@@ -142,7 +143,7 @@ class Session:
         else:
             self._restore(progress, history)
             log.info("resumed at t = %.6g s, step %d", self.simulation.time, self.simulation.step)
-        first = self.history.rows[0] if self.history.rows else self._row(self.simulation.particles.read())
+        first = self.history.rows[0] if self.history.rows else self._row(self.simulation.ledger.extremes())
         self.guard = Guard(self.scene, first, self.simulation.first_dt)
         record_session(self.job, self.scene, backend.architecture(), self.options.threads)
         self._write_outputs()
@@ -191,31 +192,28 @@ class Session:
             self.snapshot_due = simulation.time + (output.snapshot_interval or np.inf)
 
     def _append_history(self) -> None:
-        row, _ = self._checked()
-        self.history.append(row)
+        self.history.append(self._checked())
 
-    def _checked(self) -> tuple[Row, Arrays]:
-        """Return the row of the history for the present time and the state of all particles, passed by the guard."""
-        state = self.simulation.particles.read()
-        row = self._row(state)
-        self.guard.check(row, state)
-        return row, state
+    def _checked(self) -> Row:
+        """Return the row of the history for the present time, passed by the guard."""
+        simulation, extremes = self.simulation, self.simulation.ledger.extremes()
+        row = self._row(extremes)
+        self.guard.check(row, extremes, simulation.particles)
+        return row
 
-    def _row(self, state: Arrays) -> Row:
-        """Row of the history for the present time, from all fields of all particles."""
+    def _row(self, extremes: Extremes) -> Row:
+        """Row of the history for the present time."""
         simulation, events = self.simulation, self.simulation.events
         return as_row(
-            simulation.totals(state),
+            simulation.totals(),
             time=simulation.time,
             step=simulation.step,
             dt=float(simulation.clock.dt[None]),
             gravity_change=events.gravity_change,
             gravity_force=events.gravity_force,
             gravity_torque=events.gravity_torque,
-            largest_speed=float(np.linalg.norm(state["v"], axis=1).max()),
-            largest_compression=float(1.0 / (1.0 + state["j"].min())),
-            damaged_fraction=float(np.mean(state["damage_root"] ** 3)),
-            compressed_fraction=float(np.average(state["j"] < state["plastic_dilation"], weights=state["mass"])),
+            largest_speed=extremes.speed,
+            largest_compression=extremes.density,
             isolated=float(simulation.stencil.ballistic_count[None]),
         )
 
@@ -245,10 +243,10 @@ class Session:
 
     def _save(self) -> None:
         """Write the history, then the checkpoint: a resumed run drops rows that are later than its checkpoint."""
-        _, state = self._checked()
+        self._checked()
         self._write_history()
         due = {"history_due": self.history_due, "snapshot_due": self.snapshot_due, "wall_time": self._wall_time()}
-        save_checkpoint(self.job, self.simulation, {**due, "cpu_time": self._cpu_time()}, state)
+        save_checkpoint(self.job, self.simulation, {**due, "cpu_time": self._cpu_time()})
         self.saved = time.monotonic()
 
     def _wall_time(self) -> float:
@@ -279,8 +277,9 @@ class Session:
         return status
 
     def _finish(self) -> Status:
-        _, state = self._checked()
+        self._checked()
         self._write_history()
+        state = self.simulation.particles.read(*FIELDS)
         write_dataset(self.job.final, self._snapshot(state, np.float64))
         log.info("done: %d steps in %.1f s", self.simulation.step, self._wall_time())
         return self._report(JobState.DONE)

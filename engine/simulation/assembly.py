@@ -29,6 +29,7 @@ from engine.scene.scene import Scene
 from engine.scene.tillotson import TillotsonParameters
 from engine.simulation.bounds import speed_of_motion
 from engine.simulation.initial_conditions import all_flaws
+from engine.simulation.ledger import Ledger
 from engine.state.particles import Particles
 
 
@@ -96,6 +97,12 @@ def scheme(scene: Scene, response: Response) -> Scheme:
     rate = (waves + motion) / (scene.numerics.filter_time * scene.dx)
     known = motion > STILL * waves and not physics.walls and not physics.uniform_gravity
     return Filtered(response, rate, min(motion / scene.dx, rate) if known else rate, walled=bool(physics.walls))
+
+
+def ledger(scene: Scene, particles: Particles, gravity: GravityField, scheme: Scheme) -> Ledger:
+    """Return the sums over all particles."""
+    materials, inertia = [body.material for body in scene.bodies], scheme.inertia(scene.dx)
+    return Ledger(particles, materials, gravity, inertia, scene.numerics.transfer_heat)
 
 
 def _equation_of_state(scene: Scene) -> EquationOfStateLaw:

@@ -21,8 +21,9 @@ from engine.mpm.time_step import first_rate
 from engine.mpm.transfer import Transfer
 from engine.scene.scene import Scene
 from engine.simulation import assembly
-from engine.simulation.conservation import Totals, elastic_energy, half_step_work, totals
+from engine.simulation.conservation import Totals
 from engine.simulation.initial_conditions import initial_state
+from engine.simulation.ledger import Ledger
 from engine.state.clock import FAULT_NONE, Clock
 from engine.state.particles import Arrays, Particles
 
@@ -74,6 +75,10 @@ class Simulation:
         self.response = Response(self.particles, self.constitution, self.gravity, self.walls, self.clock, scene.dx)
         self.scheme = assembly.scheme(scene, self.response)
         self.contact = assembly.contact(scene)
+        inertia, takes_heat = self.scheme.inertia(scene.dx), scene.numerics.transfer_heat
+        self.ledger = Ledger(
+            self.particles, [body.material for body in scene.bodies], self.gravity, inertia, takes_heat
+        )
         self.blocks = Blocks(self.particles, scene.dx, scene.period_blocks, scene.separates_bodies)
         self.tiles = Tiles(self.blocks)
         self._make_room(scene.particles // 8)
@@ -204,19 +209,9 @@ class Simulation:
         advice = "end the run earlier, or make cells larger"
         raise stop("coordinate [m]", float(x[p]), f"below {largest:.3g}", self.time, p, advice=advice)
 
-    def totals(self, state: Arrays | None = None) -> Totals:
-        """Return the conserved quantities at the present time.
-
-        Args:
-            state: all fields of all particles at this time; read from the device if `None`.
-        """
-        state = self.particles.read() if state is None else state
-        materials, rho0 = self.scene.materials, self.rho0(state)
-        bulk = np.array([material.eos.bulk_modulus() for material in materials])[state["body"]]
-        shear = np.array([material.shear_modulus for material in materials])[state["body"]]
-        elastic, work = elastic_energy(state, rho0, bulk, shear), half_step_work(state, float(self.clock.dt[None]))
-        inertia, gravitational = self.scheme.inertia(self.scene.dx), self.gravity.energy(state["x"], state["mass"])
-        return totals(state, inertia, elastic, gravitational, work, self.scene.numerics.transfer_heat)
+    def totals(self) -> Totals:
+        """Return the conserved quantities at the present time."""
+        return self.ledger.totals(float(self.clock.dt[None]))
 
     def rho0(self, state: Arrays) -> Scalars:
         """Return the reference density of every particle [kg/m^3], shape [particle_count].

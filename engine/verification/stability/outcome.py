@@ -106,7 +106,8 @@ def _checkpoint_is_good(run: Session) -> bool:
     if load_checkpoint(run.job, simulation) is None:
         return False
     try:
-        run.guard.check(as_row(simulation.totals(), time=simulation.time), simulation.particles.read())
+        row = as_row(simulation.totals(), time=simulation.time)
+        run.guard.check(row, simulation.ledger.extremes(), simulation.particles)
     except GuardFault:
         return False
     return True

@@ -17,14 +17,14 @@ PARTICLES, AFTER_CONTACT = 1000, 6000.0
 
 def leave_uncorrected(gravity: SelfGravity) -> None:
     """Let the net force and torque be found and stay."""
-    correct = gravity.correction.apply
+    correct = gravity.rigid.apply
 
     def find() -> NetForce:
         removed = correct()
         gravity.acceleration.copy_from(gravity.pull)
         return removed
 
-    gravity.correction.apply = find
+    gravity.rigid.apply = find
 
 
 def measure(interval: float, corrected: bool) -> dict[str, Any]:

@@ -116,8 +116,8 @@ def test_an_elastic_column_pays_for_elasticity_alone(monkeypatch):
     owners = {part.name for part in parts_of(simulation) if part.fields}
     passes = {"kick", "projection", "correction"}
     laws = {"response", "eos", "energy", "dissipation", "shear"}
-    sorting = {"blocks", "sorted", "sums", "permutation"}
-    assert owners == {"particles", "clock", "stencil", "scheme"} | sorting | passes | laws
+    sorting, sums = {"blocks", "sorted", "sums", "permutation"}, {"ledger", "motion_sum", "energy_sum"}
+    assert owners == {"particles", "clock", "stencil", "scheme"} | sorting | sums | passes | laws
     assert not [part for part in PARTS if part not in ("energy", "shear") and runs(part, names)]
 
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from engine.simulation.conservation import as_row, elastic_energy, half_step_work, totals
+from engine.simulation.conservation import as_row
 from engine.state.particles import Arrays
+from tests.helpers.totals import elastic_energy, half_step_work, totals
 
 SPIN = np.array([[0.0, -2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 """Velocity gradient of a rotation by 2 rad/s about z."""
@@ -22,6 +23,9 @@ def pair() -> Arrays:
         "plastic_heat": np.array([0.5, 0.0]),
         "viscous_heat": np.array([0.0, 4.0]),
         "affine_loss": np.array([2.0, 3.0]),
+        "damage_root": np.array([1.0, 0.5]),
+        "j": np.array([-1e-3, 1e-3]),
+        "plastic_dilation": np.zeros(2),
     }
 
 
@@ -36,6 +40,7 @@ def test_totals_of_two_particles() -> None:
     assert (found.internal_energy, found.elastic_energy) == (50.0, 3.0)
     assert (found.transfer_heat, found.plastic_heat, found.viscous_heat) == (5.0, 1.5, 4.0)
     assert found.lost_energy == 9.0
+    assert (found.damaged_fraction, found.compressed_fraction) == (0.5625, 0.75)
     assert found.total_energy == pytest.approx(14.5 + 12.0 + 0.5 + 50.0 - 7.0 + 9.0)
 
 

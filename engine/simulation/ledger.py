@@ -1,0 +1,205 @@
+"""Ledger of a simulation: sums over its particles, and their extremes, on the device (engine/physics.md, section 2)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import taichi as ti
+
+from engine.device.fields import allocate, capacity, per_body, rank
+from engine.device.fixed_order_sum import FixedOrderSum
+from engine.gravity.interfaces import GravityField
+from engine.quantities import HEATS
+from engine.scene.material import Material
+from engine.simulation.conservation import Totals
+from engine.state.particles import Particles
+
+SCALARS = ("j", "E", *HEATS, "affine_loss", "half_step_work", "damage_root", "plastic_dilation")
+"""Quantities that are numbers; not every scene has a field of each."""
+
+LARGEST = float(np.finfo(np.float64).max)
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """What no particle exceeds.
+
+    Attributes:
+        speed: largest speed [m/s].
+        density: largest rho/rho0 [-].
+        compression: largest rho over the density above which broken rock bears pressure [-].
+        is_finite: whether all numbers of all particles are.
+    """
+
+    speed: float
+    density: float
+    compression: float
+    is_finite: bool
+
+
+@ti.data_oriented
+class Ledger:
+    """Sums in the order of the scene, in double precision: they depend on no order of the device.
+
+    Args:
+        particles: state of the particles.
+        materials: of every body.
+        gravity: whose work in half a step counts.
+        inertia: moment of inertia per mass of the affine motion of a particle [m^2].
+        takes_heat: whether internal energy contains the heat of the transfer.
+    """
+
+    def __init__(
+        self,
+        particles: Particles,
+        materials: Sequence[Material],
+        gravity: GravityField,
+        inertia: float,
+        takes_heat: bool,
+    ) -> None:
+        self.particles, self.gravity, self.inertia, self.takes_heat = particles, gravity, inertia, takes_heat
+        self.fields = SimpleNamespace(**{name: getattr(particles, name, None) for name in SCALARS})
+        self.material = per_body(
+            rho0=[material.rho0 for material in materials],
+            bulk=[material.eos.bulk_modulus() for material in materials],
+            shear=[material.shear_modulus for material in materials],
+        )
+        self.slot = allocate(ti.i32, capacity(particles.count))
+        self.motion_sum = FixedOrderSum(self.motion_of, 13, particles.count)
+        self.energy_sum = FixedOrderSum(self.energy_of, 12, particles.count)
+        self.speed_squared, self.least_j, self.densest, self.not_finite = (allocate(ti.f64) for _ in range(4))
+
+    def totals(self, dt: float) -> Totals:
+        """Return the conserved quantities.
+
+        Args:
+            dt: length of the last step [s].
+        """
+        count = self.particles.count
+        self.number_slots(count)
+        mass, *vectors = self.motion_sum.over(count)
+        moment, momentum, orbital, spin = np.reshape(vectors, (4, 3))
+        square, affine, internal, elastic, work, falling, affine_loss, *heats, damage, under_pressure = map(
+            float, self.energy_sum.over(count)
+        )
+        return Totals(
+            mass=float(mass),
+            momentum=momentum,
+            angular_momentum=orbital + self.inertia * spin,
+            kinetic_energy=0.5 * square,
+            affine_kinetic_energy=0.5 * self.inertia * affine,
+            internal_energy=internal,
+            elastic_energy=elastic,
+            gravitational_energy=self.gravity.energy(moment),
+            half_step_work=0.5 * dt * falling - work,
+            transfer_heat=heats[0],
+            plastic_heat=heats[1],
+            viscous_heat=heats[2],
+            lost_energy=affine_loss + (0.0 if self.takes_heat else heats[0]),
+            damaged_fraction=damage / count,
+            compressed_fraction=under_pressure / float(mass),
+        )
+
+    def extremes(self) -> Extremes:
+        """Return what no particle exceeds."""
+        self.find_extremes(self.particles.count)
+        return Extremes(
+            speed=float(np.sqrt(self.speed_squared[None])),
+            density=1.0 / (1.0 + self.least_j[None]),
+            compression=self.densest[None],
+            is_finite=not self.not_finite[None],
+        )
+
+    @ti.kernel
+    def number_slots(self, count: ti.i32):
+        """Find the index on the device of every particle of the scene."""
+        for p in range(count):
+            self.slot[self.particles.index[p]] = p
+
+    @ti.func
+    def motion_of(self, number):
+        """Return m, m x, m v, m x cross v and m times twice the axis of C, of a particle by its number in the scene."""
+        p = self.slot[number]
+        x, v, C = self.particles.x[p], ti.cast(self.particles.v[p], ti.f64), ti.cast(self.particles.C[p], ti.f64)
+        m, L = ti.cast(self.particles.mass[p], ti.f64), x.cross(v)
+        spin = ti.Vector([C[2, 1] - C[1, 2], C[0, 2] - C[2, 0], C[1, 0] - C[0, 1]])
+        result = ti.Vector.zero(ti.f64, 13)
+        result[0] = m
+        for i in ti.static(range(3)):
+            result[1 + i], result[4 + i], result[7 + i], result[10 + i] = m * x[i], m * v[i], m * L[i], m * spin[i]
+        return result
+
+    @ti.func
+    def energy_of(self, number):
+        """Return energies of a particle, its damage, and its mass if it is under pressure; `totals` names them."""
+        p = self.slot[number]
+        m, v = ti.cast(self.particles.mass[p], ti.f64), ti.cast(self.particles.v[p], ti.f64)
+        C, g = ti.cast(self.particles.C[p], ti.f64), ti.cast(self.gravity.at(p), ti.f64)
+        return ti.Vector(
+            [
+                m * v.norm_sqr(),
+                m * (C * C).sum(),
+                m * self.value(self.fields.E, p),
+                self.elastic_energy(p, m),
+                m * self.value(self.fields.half_step_work, p),
+                m * v.dot(g),
+                m * self.value(self.fields.affine_loss, p),
+                m * self.value(self.fields.transfer_heat, p),
+                m * self.value(self.fields.plastic_heat, p),
+                m * self.value(self.fields.viscous_heat, p),
+                self.value(self.fields.damage_root, p) ** 3,
+                ti.select(self.value(self.fields.j, p) < self.value(self.fields.plastic_dilation, p), m, 0.0),
+            ]
+        )
+
+    @ti.func
+    def elastic_energy(self, p, m):
+        """Return the elastic energy [J], V (P^2/(2K J_c) + s:s/4G) for small strains."""
+        of, tau = self.material[self.particles.body[p]], ti.cast(self.particles.tau[p], ti.f64)
+        pressure = -(tau[0] + tau[1] + tau[2]) / 3.0
+        square = 2.0 * (tau[3] ** 2 + tau[4] ** 2 + tau[5] ** 2)
+        for i in ti.static(range(3)):
+            square += (tau[i] + pressure) ** 2
+        dilated = 1.0 + self.value(self.fields.plastic_dilation, p)
+        return m / of.rho0 * (pressure**2 / (2.0 * of.bulk * dilated) + square / (4.0 * of.shear))
+
+    @ti.func
+    def value(self, field: ti.template(), p):
+        """Return a quantity of particle p; zero where the scene has no field of it."""
+        result = ti.cast(0.0, ti.f64)
+        if ti.static(isinstance(field, ti.Field)):
+            result = ti.cast(field[p], ti.f64)
+        return result
+
+    @ti.kernel
+    def find_extremes(self, count: ti.i32):
+        """Find the extremes of all particles."""
+        self.speed_squared[None], self.least_j[None] = 0.0, LARGEST
+        self.densest[None], self.not_finite[None] = 0.0, 0.0
+        for p in range(count):
+            ti.atomic_max(self.speed_squared[None], ti.cast(self.particles.v[p], ti.f64).norm_sqr())
+            j = self.value(self.fields.j, p)
+            ti.atomic_min(self.least_j[None], j)
+            ti.atomic_max(self.densest[None], (1.0 + self.value(self.fields.plastic_dilation, p)) / (1.0 + j))
+        for field in ti.static(self.particles.fields):
+            for p in range(count):
+                self.check_entry(field, p)
+
+    @ti.func
+    def check_entry(self, field: ti.template(), p):
+        """Keep whether a number of an entry is not finite."""
+        if ti.static(rank(field) == 0):
+            self.check_number(field[p])
+        elif ti.static(rank(field) == 1):
+            for i in ti.static(range(field.n)):
+                self.check_number(field[p][i])
+        else:
+            for i, j in ti.static(ti.ndrange(field.n, field.m)):
+                self.check_number(field[p][i, j])
+
+    @ti.func
+    def check_number(self, number):
+        """Keep whether a number is not finite."""
+        if not ti.abs(ti.cast(number, ti.f64)) <= LARGEST:
+            self.not_finite[None] = 1.0
