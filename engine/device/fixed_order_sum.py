@@ -8,9 +8,7 @@ import taichi as ti
 from numpy.typing import NDArray
 
 from engine.device.fields import allocate, capacity
-
-CHUNK = 256
-"""Entries that one thread sums."""
+from engine.device.prefix_sum import CHUNK
 
 
 @ti.data_oriented
@@ -18,7 +16,7 @@ class FixedOrderSum:
     """Sum of a vector over some entries, in double precision.
 
     Args:
-        summand: device function that returns the vector of an entry.
+        summand: device function that returns the vector of an entry; it is called once for each.
         width: length of the vector.
         size: most entries.
     """

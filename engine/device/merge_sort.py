@@ -31,7 +31,7 @@ class MergeSort:
         Args:
             count: number of entries.
             piece: entries of a piece.
-            segment: entries of a segment, a power of two of pieces.
+            segment: entries of a segment, `piece` times a power of two, of which `count` is a multiple; all if `None`.
         """
         self.sort_pieces(self.side, count, piece)
         run = piece

@@ -1,4 +1,6 @@
-"""Order of particles in a kd-tree cut at medians, on a GPU; leaves as those of engine/gravity/median_partition.py."""
+"""Order of particles in a kd-tree cut at medians, on a GPU.
+
+Leaves are those of engine/gravity/median_partition.py, unless two particles have the same coordinate at a cut."""
 
 import taichi as ti
 
@@ -20,21 +22,21 @@ class DevicePartition:
         size: particles in a leaf, at least count / 2^levels.
 
     Attributes:
-        sorted: values are the particles leaf by leaf; ~p is a copy of particle p.
+        order: its values are the particles leaf by leaf; ~p is a copy of particle p.
         lower, upper: corners of the box of every node of a level [m].
     """
 
     def __init__(self, count: int, levels: int, size: int) -> None:
         self.count, self.levels, self.size = count, levels, size
-        self.sorted = MergeSort(capacity(size << levels))
+        self.order = MergeSort(capacity(size << levels))
         self.lower, self.upper = (allocate(place3, capacity(1 << levels)) for _ in range(2))
 
     def partition(self, x: ti.Field) -> None:
         """Sort particles at positions x [m] into leaves."""
-        self.list_particles(self.sorted.side, self.count, self.size << self.levels)
+        self.list_particles(self.order.side, self.count, self.size << self.levels)
         for level in range(self.levels):
-            self.write_keys(x, self.sorted.side, level, self.levels, self.size)
-            self.sorted.sort(self.size << self.levels, self.size, self.size << (self.levels - level))
+            self.write_keys(x, self.order.side, level, self.levels, self.size)
+            self.order.sort(self.size << self.levels, self.size, self.size << (self.levels - level))
 
     def write(self, particle_of: ti.Field, room: int) -> None:
         """Write the particles leaf by leaf, or ~p for a copy of particle p.
@@ -43,24 +45,24 @@ class DevicePartition:
             particle_of: receives them.
             room: places of a leaf; those beyond its size have copies of its first particle.
         """
-        self.write_leaves(particle_of, self.sorted.side, room << self.levels, self.size, room)
+        self.write_leaves(particle_of, self.order.side, room << self.levels, self.size, room)
 
     @ti.kernel
     def write_leaves(self, particle_of: ti.template(), side: ti.i32, places: ti.i32, size: ti.i32, room: ti.i32):
         """Set the particle of every place."""
         for i in range(places):
-            first = self.sorted.value[side, i // room * size]
+            first = self.order.value[side, i // room * size]
             particle_of[i] = ti.min(first, ~first)
             if i % room < size:
-                particle_of[i] = self.sorted.value[side, i // room * size + i % room]
+                particle_of[i] = self.order.value[side, i // room * size + i % room]
 
     @ti.kernel
     def list_particles(self, side: ti.i32, count: ti.i32, entries: ti.i32):
         """List all particles, and copies up to a number of entries."""
         for i in range(entries):
-            self.sorted.value[side, i] = i
+            self.order.value[side, i] = i
             if i >= count:
-                self.sorted.value[side, i] = ~((i - count) % count)
+                self.order.value[side, i] = ~((i - count) % count)
 
     @ti.kernel
     def write_keys(self, x: ti.template(), side: ti.i32, level: ti.i32, levels: ti.i32, size: ti.i32):
@@ -82,12 +84,13 @@ class DevicePartition:
                 coordinate = at[1]
             elif sides[2] > sides[0]:
                 coordinate = at[2]
-            self.sorted.key[side, i] = ordered(coordinate)
+            # a copy comes after its particle, as on the host
+            self.order.key[side, i] = ordered(coordinate) + ti.cast(self.order.value[side, i] < 0, ti.i64)
 
     @ti.func
     def particle(self, side, i):
         """Return the particle of an entry, or that of which it is a copy."""
-        value = self.sorted.value[side, i]
+        value = self.order.value[side, i]
         return ti.max(value, ~value)
 
 

@@ -23,7 +23,8 @@ def median_order(x: Vectors, levels: int, size: int) -> Indices:
     """
     copies = np.arange((size << levels) - len(x)) % len(x)
     order = np.concatenate([np.arange(len(x)), ~copies])
-    points = np.ascontiguousarray(np.concatenate([x, x[copies]]).T)
+    # a copy comes after its particle, so that no cut between both depends on how halves are found
+    points = np.ascontiguousarray(np.concatenate([x, np.nextafter(x[copies], np.inf)]).T)
     for level in range(levels):
         nodes = np.arange(1 << level)
         sides = points.reshape(3, len(nodes), -1)

@@ -50,7 +50,7 @@ class SelfGravity(ABC):
         self.position, self.pull = (allocate(place3, capacity(self.count)) for _ in range(2))
         self.mass, self.particle_of = allocate(ti.f64, capacity(self.count)), allocate(ti.i32, capacity(slots))
         self.extent, self.largest_mass = allocate(ti.f64), allocate(ti.f64)
-        self.energy_sum = FixedOrderSum(self.mass_times_potential, 1, self.count)
+        self.potential_sum = FixedOrderSum(self.mass_times_potential, 1, self.count)
         self.rigid = RigidCorrection(self.position, self.mass, self.pull, self.acceleration, self.count)
         self.ball, self.radius = radius, allocate(Real)
         shape = capacity(slots)
@@ -102,10 +102,10 @@ class SelfGravity(ABC):
         return np.asarray(self.pull.to_numpy()[: self.count, 0])
 
     def energy(self, moment: Vector) -> float:
-        """Return half the sum of mass times potential [J]; the argument is not used."""
+        """Return half the sum of mass times potential [J], which the sum of mass times position does not tell."""
         self.take_particles(0.0, self.count)
         self._evaluate(potential=True)
-        return 0.5 * float(self.energy_sum.over(self.count)[0])
+        return 0.5 * float(self.potential_sum.over(self.count)[0])
 
     @ti.func
     def mass_times_potential(self, p):
@@ -123,7 +123,7 @@ class SelfGravity(ABC):
         gm = _power_of_two(G_NEWTON * self.largest_mass[None])
         self.arrange()
         self.radius[None] = self.ball / length
-        self.fill_slots(self.slots, length, gm)
+        self.fill_slots(self.slots, length, gm / G_NEWTON)
         self.solve(potential)
         unit = gm / length if potential else gm / length**2
         self.take_results(self.slots, unit, potential)
@@ -144,8 +144,8 @@ class SelfGravity(ABC):
             ti.atomic_max(self.largest_mass[None], self.mass[p])
 
     @ti.kernel
-    def fill_slots(self, slots: ti.i32, length: ti.f64, gm: ti.f64):
-        """Set positions and masses of all slots, in units of a length [m] and a product of G and a mass [m^3/s^2]."""
+    def fill_slots(self, slots: ti.i32, length: ti.f64, mass: ti.f64):
+        """Set positions and masses of all slots, in units of a length [m] and a mass [kg]."""
         for s in range(slots):
             value = self.particle_of[s]
             p = ti.max(value, ~value)
@@ -153,7 +153,7 @@ class SelfGravity(ABC):
             self.x[s], self.y[s], self.z[s] = x[0], x[1], x[2]
             self.gm[s] = 0.0
             if value >= 0:
-                self.gm[s] = ti.cast(G_NEWTON * self.mass[p] / gm, Real)
+                self.gm[s] = ti.cast(self.mass[p] / mass, Real)
 
     @ti.kernel
     def take_results(self, slots: ti.i32, unit: ti.f64, potential: ti.template()):

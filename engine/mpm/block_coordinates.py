@@ -10,7 +10,7 @@ from engine.constants import BLOCK_EDGE
 HALF_RANGE = 1 << 20
 """Blocks per axis on either side of the origin."""
 
-GUARD = 3
+BORDER = 3
 """Blocks within the range that particles do not enter: they reach nodes beyond their own block."""
 
 BITS = 21
@@ -27,7 +27,7 @@ def is_in_range(x, dx):
     """Return whether block coordinates reach a position x [m] on a grid of spacing dx [m]; false where it is NaN."""
     result = True
     for axis in ti.static(range(3)):
-        result = result and ti.abs(x[axis] / (BLOCK_EDGE * dx)) < HALF_RANGE - GUARD
+        result = result and ti.abs(x[axis] / (BLOCK_EDGE * dx)) < HALF_RANGE - BORDER
     return result
 
 

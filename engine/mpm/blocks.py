@@ -44,7 +44,8 @@ class Blocks:
         first_particle: of every place, in the order of the keys; one more ends the last.
         first_block: of every place; one more ends the last.
         is_alone: whether a place has one particle, and none beside it.
-        place_of, slot: place of every sorted particle, and index on the device of every numbered one.
+        place_of: place of every particle, in the order of the keys.
+        slot: index on the device of every particle, by its number in the scene.
         far: 1 if a particle was beyond the range of coordinates.
     """
 

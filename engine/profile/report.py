@@ -42,7 +42,7 @@ def _table(result: Measurement) -> Table:
     kernels = result.kernels.values()
     host = Cost(0, result.whole.wall - sum(c.wall for c in kernels), result.whole.cpu - sum(c.cpu for c in kernels))
     total = size(sum(allocated_bytes(value) for part in parts for value in part.fields.values()))
-    table.add_row("between kernels", "", "sorting into blocks and the like", "", "", "", *_times(result, host))
+    table.add_row("between kernels", "", "what the host does", "", "", "", *_times(result, host))
     table.add_row("total", "", "", total, "", "", *_times(result, result.whole))
     return table
 

@@ -32,7 +32,7 @@ SPEED_FACTOR = 10.0
 LARGEST_DRIFT = max(1e6 * float(np.finfo(np.float64).eps), 1e3 * EPSILON)
 """Largest change of the total momentum in units of mass times the scene's speeds [-]."""
 
-ROUND_OFF = 1e-13
+ROUND_OFF = 1e-11
 """Of a sum of masses in another order [-]: history that an earlier version began was summed in one."""
 
 STEPS_FACTOR = 1e4

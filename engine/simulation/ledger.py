@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import taichi as ti
 
-from engine.device.fields import allocate, capacity, per_body, rank
+from engine.device.fields import allocate, capacity, filled, rank
 from engine.device.fixed_order_sum import FixedOrderSum
 from engine.gravity.interfaces import GravityField
 from engine.quantities import HEATS
@@ -18,8 +18,6 @@ from engine.state.particles import Particles
 SCALARS = ("j", "E", *HEATS, "affine_loss", "half_step_work", "damage_root", "plastic_dilation")
 """Quantities that are numbers; not every scene has a field of each."""
 
-LARGEST = float(np.finfo(np.float64).max)
-
 
 @dataclass(frozen=True)
 class Extremes:
@@ -28,7 +26,7 @@ class Extremes:
     Attributes:
         speed: largest speed [m/s].
         density: largest rho/rho0 [-].
-        compression: largest rho over the density above which broken rock bears pressure [-].
+        compression: largest rho/rho0 times J_c, the inverse of the density at which broken rock bears pressure [-].
         is_finite: whether all numbers of all particles are.
     """
 
@@ -40,7 +38,7 @@ class Extremes:
 
 @ti.data_oriented
 class Ledger:
-    """Sums in the order of the scene, in double precision: they depend on no order of the device.
+    """Sums in double precision and in the order of the scene; that of gravity alone is in the order of the device.
 
     Args:
         particles: state of the particles.
@@ -60,15 +58,15 @@ class Ledger:
     ) -> None:
         self.particles, self.gravity, self.inertia, self.takes_heat = particles, gravity, inertia, takes_heat
         self.fields = SimpleNamespace(**{name: getattr(particles, name, None) for name in SCALARS})
-        self.material = per_body(
-            rho0=[material.rho0 for material in materials],
-            bulk=[material.eos.bulk_modulus() for material in materials],
-            shear=[material.shear_modulus for material in materials],
-        )
+        self.rho0 = filled(ti.f64, np.array([material.rho0 for material in materials]))
+        self.bulk = filled(ti.f64, np.array([material.eos.bulk_modulus() for material in materials]))
+        self.shear = filled(ti.f64, np.array([material.shear_modulus for material in materials]))
         self.slot = allocate(ti.i32, capacity(particles.count))
         self.motion_sum = FixedOrderSum(self.motion_of, 13, particles.count)
         self.energy_sum = FixedOrderSum(self.energy_of, 12, particles.count)
-        self.speed_squared, self.least_j, self.densest, self.not_finite = (allocate(ti.f64) for _ in range(4))
+        self.speed_squared, self.density, self.compression = (allocate(ti.f64) for _ in range(3))
+        self.not_finite, self.largest = allocate(ti.f64), allocate(ti.f64)
+        self.largest[None] = np.finfo(np.float64).max  # a literal of a kernel would be infinite in single precision
 
     def totals(self, dt: float) -> Totals:
         """Return the conserved quantities.
@@ -106,8 +104,8 @@ class Ledger:
         self.find_extremes(self.particles.count)
         return Extremes(
             speed=float(np.sqrt(self.speed_squared[None])),
-            density=1.0 / (1.0 + self.least_j[None]),
-            compression=self.densest[None],
+            density=self.density[None],
+            compression=self.compression[None],
             is_finite=not self.not_finite[None],
         )
 
@@ -156,13 +154,14 @@ class Ledger:
     @ti.func
     def elastic_energy(self, p, m):
         """Return the elastic energy [J], V (P^2/(2K J_c) + s:s/4G) for small strains."""
-        of, tau = self.material[self.particles.body[p]], ti.cast(self.particles.tau[p], ti.f64)
+        body, tau = self.particles.body[p], ti.cast(self.particles.tau[p], ti.f64)
         pressure = -(tau[0] + tau[1] + tau[2]) / 3.0
         square = 2.0 * (tau[3] ** 2 + tau[4] ** 2 + tau[5] ** 2)
         for i in ti.static(range(3)):
             square += (tau[i] + pressure) ** 2
         dilated = 1.0 + self.value(self.fields.plastic_dilation, p)
-        return m / of.rho0 * (pressure**2 / (2.0 * of.bulk * dilated) + square / (4.0 * of.shear))
+        density = pressure**2 / (2.0 * self.bulk[body] * dilated) + square / (4.0 * self.shear[body])
+        return m / self.rho0[body] * density
 
     @ti.func
     def value(self, field: ti.template(), p):
@@ -175,13 +174,13 @@ class Ledger:
     @ti.kernel
     def find_extremes(self, count: ti.i32):
         """Find the extremes of all particles."""
-        self.speed_squared[None], self.least_j[None] = 0.0, LARGEST
-        self.densest[None], self.not_finite[None] = 0.0, 0.0
+        self.speed_squared[None], self.not_finite[None] = 0.0, 0.0
+        self.density[None], self.compression[None] = 0.0, 0.0
         for p in range(count):
             ti.atomic_max(self.speed_squared[None], ti.cast(self.particles.v[p], ti.f64).norm_sqr())
-            j = self.value(self.fields.j, p)
-            ti.atomic_min(self.least_j[None], j)
-            ti.atomic_max(self.densest[None], (1.0 + self.value(self.fields.plastic_dilation, p)) / (1.0 + j))
+            density = 1.0 / (1.0 + self.value(self.fields.j, p))
+            ti.atomic_max(self.density[None], density)
+            ti.atomic_max(self.compression[None], (1.0 + self.value(self.fields.plastic_dilation, p)) * density)
         for field in ti.static(self.particles.fields):
             for p in range(count):
                 self.check_entry(field, p)
@@ -201,5 +200,5 @@ class Ledger:
     @ti.func
     def check_number(self, number):
         """Keep whether a number is not finite."""
-        if not ti.abs(ti.cast(number, ti.f64)) <= LARGEST:
+        if not ti.abs(ti.cast(number, ti.f64)) <= self.largest[None]:
             self.not_finite[None] = 1.0

@@ -23,7 +23,6 @@ from engine.scene.scene import Scene
 from engine.simulation import assembly
 from engine.simulation.conservation import Totals
 from engine.simulation.initial_conditions import initial_state
-from engine.simulation.ledger import Ledger
 from engine.state.clock import FAULT_NONE, Clock
 from engine.state.particles import Arrays, Particles
 
@@ -56,6 +55,8 @@ class Simulation:
     Attributes:
         particles, clock: state on the device.
         constitution, gravity, walls: physics of the scene.
+        ledger: sums over all particles.
+        blocks, tiles: order of the particles, and which blocks share nodes.
         stencil, transfer: the grid and the kernels of a step.
         events: times of what happens between steps.
 
@@ -75,10 +76,7 @@ class Simulation:
         self.response = Response(self.particles, self.constitution, self.gravity, self.walls, self.clock, scene.dx)
         self.scheme = assembly.scheme(scene, self.response)
         self.contact = assembly.contact(scene)
-        inertia, takes_heat = self.scheme.inertia(scene.dx), scene.numerics.transfer_heat
-        self.ledger = Ledger(
-            self.particles, [body.material for body in scene.bodies], self.gravity, inertia, takes_heat
-        )
+        self.ledger = assembly.ledger(scene, self.particles, self.gravity, self.scheme)
         self.blocks = Blocks(self.particles, scene.dx, scene.period_blocks, scene.separates_bodies)
         self.tiles = Tiles(self.blocks)
         self._make_room(scene.particles // 8)

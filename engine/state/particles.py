@@ -45,8 +45,8 @@ class Particles:
     Laws and gravity allocate what they store by `require`. A quantity without a field is zero: it is read as zeros, and
     nothing else can be written to it.
 
-    On the device those of a block are contiguous in memory. The
-    order of the arrays that `read` returns and `write` takes is that of the scene and never changes.
+    On the device the particles of a block are contiguous in memory. The order of the arrays that `read` returns and
+    `write` takes is that of the scene and never changes.
 
     Args:
         count: number of particles.

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from engine.device.backend import Real, mat3, vec3, vec6
 from engine.device.fields import allocate, capacity, overwrite
 from engine.device.permutation import Permutation
+from engine.simulation.simulation import Simulation
 from engine.state.particles import Particles
 
 Array = NDArray[Any]
@@ -99,3 +100,12 @@ def moved(particles: Particles, generator: np.random.Generator) -> Array:
     overwrite(permutation.source, source)
     permutation.apply(particles.count)
     return order
+
+
+def finds(simulation: Simulation, name: str, value: float) -> bool:
+    """Whether the ledger of calm particles finds a number that is not finite."""
+    values = simulation.particles.read(name)[name]
+    values[7, ...] = value
+    assert simulation.ledger.extremes().is_finite
+    simulation.particles.write({name: values})
+    return not simulation.ledger.extremes().is_finite

@@ -16,7 +16,7 @@ from engine.simulation.conservation import as_row
 from engine.simulation.guard import Guard
 from engine.simulation.simulation import Simulation
 from engine.state.particles import Particles
-from tests.helpers.device import Array
+from tests.helpers.device import Array, finds
 from tests.helpers.gravity import accelerations, energy
 from tests.helpers.scenes import RUBBLE, advance, body, rubble_collision, scene, started
 
@@ -104,6 +104,12 @@ def test_no_step_raises_the_energy_of_strain_rates(size):
 
     affine(-size, 0.2 / size)
     np.testing.assert_allclose(result.to_numpy(), np.diag([0.0, 0.0, -size * 0.8 ** (-1.0 / 3.0)]), rtol=1e-6)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("name", ["x", "b_minus_I", "j"])
+def test_a_number_that_is_not_finite_is_found(name, value):
+    assert finds(started(rubble_collision(**SINGLE)), name, value)
 
 
 def test_a_push_stops_a_run():

@@ -66,8 +66,10 @@ def test_particles_in_one_place_are_halved_too(partition):
     assert sorted(partition(np.ones((32, 3)), 3, 4).ravel()) == list(range(32))
 
 
-def test_host_and_device_cut_the_same_leaves():
-    x = cloud(128 * 24)
+@pytest.mark.parametrize("count", [128 * 24, 3000])
+def test_host_and_device_cut_the_same_leaves(count):
+    """Copies, which are where their particles are, included."""
+    x = cloud(count)
     leaves, again = median_order(x, 7, 24), device_order(x, 7, 24)
     assert np.array_equal(np.sort(leaves, axis=1), np.sort(again, axis=1))
 

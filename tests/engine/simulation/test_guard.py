@@ -158,8 +158,8 @@ def test_a_compression_beyond_the_energy_of_the_bound_is_named():
 
 def test_mass_must_stay_to_the_round_off_of_its_sum():
     guard, state = guard_of(collision())
-    check(guard, row_of(changed(state, "mass", 3.0 * (1.0 + 1e-14))), state)
-    fault = stopped(guard, changed(state, "mass", 3.0 * (1.0 + 1e-11)))
+    check(guard, row_of(changed(state, "mass", 3.0 * (1.0 + 1e-12))), state)
+    fault = stopped(guard, changed(state, "mass", 3.0 * (1.0 + 1e-9)))
     assert fault.quantity == "total mass [kg]" and fault.particle is None
 
 

@@ -8,6 +8,7 @@ import pytest
 from engine.scene.scene import Scene
 from engine.simulation.simulation import Simulation
 from tests.helpers import totals as host
+from tests.helpers.device import finds
 from tests.helpers.scenes import advance, body, rubble_collision, scene, started
 
 pytestmark = pytest.mark.usefixtures("taichi")
@@ -64,11 +65,25 @@ def test_extremes_are_those_of_the_state():
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("name", ["x", "v", "C", "tau", "damage_root", "E", "j"])
+@pytest.mark.parametrize("name", ["x", "v", "C", "tau", "b_minus_I", "damage_root", "E", "j"])
 def test_a_number_that_is_not_finite_is_found_in_any_field(name, value):
+    assert finds(started(rubble_collision()), name, value)
+
+
+def test_matter_of_no_volume_is_beyond_every_density():
+    """Not an error of its own: the guard names it."""
     simulation = started(rubble_collision())
-    values = simulation.particles.read(name)[name]
-    values[7, ...] = value
-    assert simulation.ledger.extremes().is_finite
-    simulation.particles.write({name: values})
-    assert not simulation.ledger.extremes().is_finite
+    j = simulation.particles.read("j")["j"]
+    j[3] = -1.0
+    simulation.particles.write({"j": j})
+    assert simulation.ledger.extremes().density == np.inf == simulation.ledger.extremes().compression
+
+
+def test_half_a_step_of_work_takes_the_energy_of_a_fall_to_the_time_of_its_height():
+    """Velocities belong to the middle of the step, so what is left is its second order, m (g dt)^2/8."""
+    physics = {"energy": False, "shear": False, "strength": False, "fracture": None, "gravity": None}
+    simulation = started(scene(body(), physics={**physics, "uniform_gravity": (1.0, -2.0, 3.0)}))
+    before, after = simulation.totals(), advance(simulation, 20).totals()
+    left = after.mass * 14.0 * simulation.clock.dt[None] ** 2 / 8.0
+    assert before.total_energy - after.total_energy == pytest.approx(left, rel=1e-6)
+    assert after.half_step_work > 100.0 * left
