@@ -1,6 +1,6 @@
 """Order of particles in a kd-tree cut at medians, on the host.
 
-On a CPU it takes a third of the time of engine/gravity/device_partition.py.
+On a CPU it takes a fifth of the time of engine/gravity/device_partition.py.
 """
 
 import numpy as np
