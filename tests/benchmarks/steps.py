@@ -1,11 +1,13 @@
 """Time of the engine's step and of its stages, at one size on a number of threads."""
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 from engine.device import backend
 from engine.device.backend import Real
 from engine.device.launches import Launches
+from engine.mpm.transfer import Transfer
 from engine.profile.parts import name_in_tuple
 from engine.scene.scene import Gravity
 from engine.simulation.simulation import Simulation
@@ -22,7 +24,7 @@ def measure(particles: int, threads: int, contact: float, steps: int, arch: str 
     """Times of `steps` steps of two bodies of `particles` each, from `contact` [s] after they met."""
     backend.start(arch, threads)
     simulation = in_contact(collision(particles), contact)
-    watches, rebuild = time_steps(simulation, steps)
+    whole, by_stage, rebuild = time_steps(simulation, steps)
     return {
         "particles": simulation.particles.count,
         "threads": threads,
@@ -32,41 +34,45 @@ def measure(particles: int, threads: int, contact: float, steps: int, arch: str 
         "blocks": int(simulation.stencil.block_count[None]),
         "damaged": float((simulation.particles.read("damage_root")["damage_root"] >= 1.0).mean()),
         "steps": steps,
-        "step": total(watches).summary(),
-        "phases": phases(simulation, watches),
+        "step": whole.summary(),
+        "phases": {name: watch.summary() for name, watch in by_stage.items()},
         "rebuild": {**rebuild.summary(), "count": len(rebuild.wall)},
         "gravity": gravity(particles).summary(),
         "bytes": {**allocated(simulation), "traffic": bytes_per_step(simulation)},
     }
 
 
-def time_steps(simulation: Simulation, steps: int) -> tuple[list[Stopwatch], Stopwatch]:
-    """Watches of the stages of `steps` steps, and of the rebuilding of blocks between them."""
-    watches, rebuild = [Stopwatch() for _ in stages(simulation)], Stopwatch()
+def time_steps(simulation: Simulation, steps: int) -> tuple[Stopwatch, dict[str, Stopwatch], Stopwatch]:
+    """Watches of `steps` steps, of the stages of as many others by name, and of sorting into blocks between them."""
+    whole, by_stage, rebuild = Stopwatch(), [Stopwatch() for _ in stages(simulation.transfer)], Stopwatch()
     before = simulation.step
-    for _ in range(steps):
+    for turn in range(2 * steps):
         if simulation.clock.moved_out[None]:
             with rebuild.lap():
                 make_ready(simulation)
-        for (_, run), watch in zip(stages(simulation), watches, strict=True):
-            with watch.lap():
-                run()
-    assert simulation.step == before + steps, "the clock paused a step that was timed"
-    return watches, rebuild
+        if turn % 2 == 0:
+            with whole.lap():
+                simulation.transfer.step()
+        else:
+            for (_, run), watch in zip(stages(simulation.transfer), by_stage, strict=True):
+                with watch.lap():
+                    run()
+    assert simulation.step == before + 2 * steps, "the clock paused a step that was timed"
+    return whole, phases(simulation, by_stage), rebuild
 
 
-def stages(simulation: Simulation) -> list[tuple[str, Callable[[], None]]]:
+@cache
+def stages(transfer: Transfer) -> list[tuple[str, Callable[[], None]]]:
     """Names and kernels of the stages of a step, in order."""
-    transfer = simulation.transfer
-    return [(name_in_tuple(part), Launches(*part.kernels)) for part in (transfer, *transfer.stages)]
+    parts = [("begin", transfer), *((name_in_tuple(stage), stage) for stage in transfer.stages)]
+    return [(name, Launches(*part.kernels)) for name, part in parts]
 
 
-def phases(simulation: Simulation, watches: Sequence[Stopwatch]) -> dict[str, dict[str, float]]:
-    """Times of the stages by name: the sum of those that occur more than once in a step."""
-    names = [name for name, _ in stages(simulation)]
+def phases(simulation: Simulation, watches: Sequence[Stopwatch]) -> dict[str, Stopwatch]:
+    """Watches of the stages by name: the sum of those that occur more than once in a step."""
+    names = [name for name, _ in stages(simulation.transfer)]
     return {
-        name: total([watch for other, watch in zip(names, watches, strict=True) if other == name]).summary()
-        for name in names
+        name: total([watch for other, watch in zip(names, watches, strict=True) if other == name]) for name in names
     }
 
 
