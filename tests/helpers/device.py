@@ -1,7 +1,7 @@
 """Device functions run over arrays, so that a law can be tested alone; random tensors to run them on."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -102,10 +102,14 @@ def moved(particles: Particles, generator: np.random.Generator) -> Array:
     return order
 
 
-def finds(simulation: Simulation, name: str, value: float) -> bool:
-    """Whether the ledger of calm particles finds a number that is not finite."""
-    values = simulation.particles.read(name)[name]
-    values[7, ...] = value
+def finds(simulation: Simulation, name: str, numbers: Sequence[float]) -> list[bool]:
+    """Whether the ledger of calm particles finds numbers that are not finite, each put in place of one of theirs."""
+    calm, found = simulation.particles.read(name)[name], []
     assert simulation.ledger.extremes().is_finite
-    simulation.particles.write({name: values})
-    return not simulation.ledger.extremes().is_finite
+    for number in numbers:
+        values = calm.copy()
+        values[(7,) + (-1,) * (calm.ndim - 1)] = number
+        simulation.particles.write({name: values})
+        found.append(not simulation.ledger.extremes().is_finite)
+    simulation.particles.write({name: calm})
+    return found

@@ -106,10 +106,10 @@ def test_no_step_raises_the_energy_of_strain_rates(size):
     np.testing.assert_allclose(result.to_numpy(), np.diag([0.0, 0.0, -size * 0.8 ** (-1.0 / 3.0)]), rtol=1e-6)
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("name", ["x", "b_minus_I", "j"])
-def test_a_number_that_is_not_finite_is_found(name, value):
-    assert finds(started(rubble_collision(**SINGLE)), name, value)
+def test_a_number_that_is_not_finite_is_found():
+    simulation = started(rubble_collision(**SINGLE))
+    for name in ("x", "b_minus_I", "j"):
+        assert finds(simulation, name, (np.nan, np.inf, -np.inf)) == [True, True, True], name
 
 
 def test_a_push_stops_a_run():

@@ -64,10 +64,10 @@ def test_extremes_are_those_of_the_state():
     assert asdict(found) == pytest.approx(asdict(expected), rel=1e-14) and found.is_finite
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("name", ["x", "v", "C", "tau", "b_minus_I", "damage_root", "E", "j"])
-def test_a_number_that_is_not_finite_is_found_in_any_field(name, value):
-    assert finds(started(rubble_collision()), name, value)
+def test_a_number_that_is_not_finite_is_found_in_any_field():
+    simulation = started(rubble_collision())
+    for name in ("x", "v", "C", "tau", "b_minus_I", "damage_root", "E", "j"):
+        assert finds(simulation, name, (np.nan, np.inf, -np.inf)) == [True, True, True], name
 
 
 def test_matter_of_no_volume_is_beyond_every_density():
