@@ -134,7 +134,7 @@ def test_a_scene_is_that_of_the_cpu(given: Callable[[], Scene]) -> None:
 
 @pytest.mark.skipif(not DOUBLE, reason="the same calls in single precision")
 def test_nothing_but_scalars_crosses_between_outputs(device: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Steps, sorting into blocks and gravity move no field of particles between device and host."""
+    """Steps, sorting, gravity and the row of a history move no field of particles between device and host."""
     simulation, crossed, sorts = started(collision()), [], []
     first = simulation.events.gravity_due
     for kind in (ScalarField, MatrixField):
@@ -142,6 +142,8 @@ def test_nothing_but_scalars_crosses_between_outputs(device: None, monkeypatch: 
             monkeypatch.setattr(kind, name, recorded(getattr(kind, name), crossed))
     monkeypatch.setattr(Blocks, "write", recorded(Blocks.write, sorts))
     after_steps(simulation, 3 * STEPS)
+    simulation.totals()
+    simulation.ledger.extremes()
     assert sorts and simulation.events.gravity_due > first + simulation.scene.physics.gravity.interval
     assert [field.shape for field in crossed if field.shape != ()] == []
     simulation.particles.read("mass")
