@@ -16,7 +16,7 @@ from engine.scene.collision import Collision
 from tests.benchmarks.child import ROOT, ask
 from tests.benchmarks.host import commit, host
 
-SIZES = (1_000, 5_000, 20_000, 100_000, 500_000)
+SIZES = (1_000, 5_000, 20_000, 100_000, 500_000, 1_000_000)
 """Particles per body."""
 STEPS = 20
 CASE = {"velocity": 200.0, "angle": 15.0, "end_time": 10_300.0, "parameter_set": "talk", "numerics": {"cfl": 0.9}}
@@ -38,7 +38,8 @@ def main(
     out.mkdir(parents=True)
     results = {"arch": arch.value, "commit": commit(), "host": host(), "device": _device()}
     for name, measure in {
-        "steps": lambda: [_steps(arch, n, p) for p in ("f64", "f32") for n in SIZES if n <= largest],
+        "copy": lambda: ask("machine", "f64", threads=1, arch=arch.value),
+        "steps": lambda: [_steps(arch, n, p, results["copy"]) for p in ("f64", "f32") for n in SIZES if n <= largest],
         "repeatable": lambda: _repeatable(arch, out),
         "case": lambda: _run(arch, out / "case", {**CASE, "particles": particles}),
         "verify": lambda: _seconds("engine", "verify", "--arch", arch),
@@ -49,15 +50,20 @@ def main(
         (out / "gpu.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
 
 
-def _steps(arch: Arch, particles: int, precision: Precision) -> Results:
-    """Time of a step and its stages, of sorting and of gravity; or why there is none, as on a card that is full."""
+def _steps(arch: Arch, particles: int, precision: Precision, copy: Results) -> Results:
+    """Time of a step and its stages, of sorting and of gravity; or why there is none, as on a card that is full.
+
+    The share of the bandwidth is that of the least traffic of a step in what the device copies at most.
+    """
     # bodies have just met: the way to 100 s would take longer than what is timed
     given = {"particles": particles, "threads": 1, "contact": 0.0, "steps": STEPS, "arch": arch.value}
     try:
         found = ask("steps", precision, **given)
     except subprocess.CalledProcessError as error:
         return {"particles": 2 * particles, "precision": precision, "failed": f"exit code {error.returncode}"}
-    return {**found, "particle_steps_per_second": found["particles"] / (1e-3 * found["step"]["least_ms"])}
+    rate = found["particles"] / (1e-3 * found["step"]["least_ms"])
+    share = rate * found["bytes"]["traffic"] / copy["bytes_per_second"]
+    return {**found, "particle_steps_per_second": rate, "share_of_bandwidth": share}
 
 
 def _repeatable(arch: Arch, out: Path) -> bool:

@@ -1,5 +1,6 @@
 """Time of the engine's step and of its stages, at one size on a number of threads."""
 
+import time
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
@@ -17,7 +18,7 @@ from tests.benchmarks.memory import allocated, bytes_per_step
 from tests.benchmarks.scene import collision
 from tests.benchmarks.stopwatch import Stopwatch, total
 
-GRAVITY_CALLS = 3
+GRAVITY_CALLS, LAUNCHES = 3, 50
 
 
 def measure(particles: int, threads: int, contact: float, steps: int, arch: str = "cpu") -> dict[str, Any]:
@@ -35,6 +36,8 @@ def measure(particles: int, threads: int, contact: float, steps: int, arch: str 
         "damaged": float((simulation.particles.read("damage_root")["damage_root"] >= 1.0).mean()),
         "steps": steps,
         "step": whole.summary(),
+        "launches": sum(len(part.kernels) for part in (simulation.transfer, *simulation.transfer.stages)),
+        "launch_ms": launching(simulation),
         "phases": {name: watch.summary() for name, watch in by_stage.items()},
         "rebuild": {**rebuild.summary(), "count": len(rebuild.wall)},
         "gravity": gravity(particles).summary(),
@@ -59,6 +62,19 @@ def time_steps(simulation: Simulation, steps: int) -> tuple[Stopwatch, dict[str,
                     run()
     assert simulation.step == before + 2 * steps, "the clock paused a step that was timed"
     return whole, phases(simulation, by_stage), rebuild
+
+
+def launching(simulation: Simulation) -> float:
+    """Time [ms] in which the host launches a step that the clock pauses, so that the device has nothing to do."""
+    simulation.clock.pause_time[None] = simulation.time
+    simulation.transfer.step()
+    backend.wait()
+    begun = time.perf_counter()
+    for _ in range(LAUNCHES):
+        simulation.transfer.step()
+    launched = time.perf_counter() - begun
+    backend.wait()
+    return 1e3 * launched / LAUNCHES
 
 
 @cache
