@@ -8,13 +8,12 @@ from contextlib import contextmanager
 from functools import cache
 from threading import Lock
 
+from engine.device.options import CUDA_DEVICES as CUDA
+from engine.device.options import VULKAN_DEVICE as VULKAN
 from engine.device.options import Arch
 
 RESOURCE = "GPU"
 """Dask's resource of which a worker has as many as it has GPUs; a job takes its share of one."""
-
-CUDA, VULKAN = "CUDA_VISIBLE_DEVICES", "TI_VISIBLE_DEVICE"
-"""Environment variables by which a job sees one device."""
 
 HIDDEN = ("", "-1", "NoDevFiles")
 """Texts of the variable that hide all devices."""

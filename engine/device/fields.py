@@ -38,9 +38,13 @@ def allocate(kind: Any, shape: int | tuple[int, ...] = ()) -> ti.Field:
     return make(shape=(first + first % 2, *others))
 
 
-def rank(field: ti.Field) -> int:
-    """Return the number of indices of a component of an entry: 0 of a scalar, 1 of a vector, 2 of a matrix."""
-    return int(getattr(field, "ndim", 0))
+def components(field: ti.Field) -> tuple[ti.Field, ...]:
+    """Return the components of a field of scalars, vectors or matrices, row by row, each as a field of scalars."""
+    rank = getattr(field, "ndim", 0)
+    if rank == 0:
+        return (field,)
+    indices = np.ndindex((field.n, field.m)[:rank])
+    return tuple(field.get_scalar_field(*index) for index in indices)
 
 
 def filled(dtype: Any, values: NDArray[np.generic]) -> ti.Field:

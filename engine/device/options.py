@@ -19,6 +19,9 @@ class Arch(StrEnum):
     GPU = "gpu"
 
 
+CUDA_DEVICES, VULKAN_DEVICE = "CUDA_VISIBLE_DEVICES", "TI_VISIBLE_DEVICE"
+"""Environment variables by which a process sees some of several GPUs."""
+
 Precision = Literal["f64", "f32"]
 """Names of the precisions: double and single."""
 

@@ -13,12 +13,10 @@ from pathlib import Path
 
 from engine import PHYSICS_VERSION
 from engine.device.backend import Real
+from engine.device.options import CUDA_DEVICES, VULKAN_DEVICE
 from engine.job.directory import JobDirectory
 from engine.job.storage import write_json
 from engine.scene.scene import Scene
-
-DEVICES = ("CUDA_VISIBLE_DEVICES", "TI_VISIBLE_DEVICE")
-"""Environment variables that choose among several GPUs."""
 
 PACKAGES = ("asteroid-collisions", "taichi", "numpy", "scipy", "xarray", "netCDF4", "pydantic")
 
@@ -61,7 +59,7 @@ def _session(arch: str, threads: int) -> dict[str, object]:
         "python": platform.python_version(),
         "packages": {name: _version(name) for name in PACKAGES},
         "arch": arch,
-        "devices": {name: os.environ[name] for name in DEVICES if name in os.environ},
+        "devices": {name: os.environ[name] for name in (CUDA_DEVICES, VULKAN_DEVICE) if name in os.environ},
         "threads": threads,
         "precision": str(Real),
         "git": _git_state(),

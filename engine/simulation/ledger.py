@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import taichi as ti
 
-from engine.device.fields import allocate, capacity, filled, rank
+from engine.device.fields import allocate, capacity, components, filled
 from engine.device.fixed_order_sum import FixedOrderSum
 from engine.gravity.interfaces import GravityField
 from engine.quantities import HEATS
@@ -58,6 +58,7 @@ class Ledger:
     ) -> None:
         self.particles, self.gravity, self.inertia, self.takes_heat = particles, gravity, inertia, takes_heat
         self.fields = SimpleNamespace(**{name: getattr(particles, name, None) for name in SCALARS})
+        self.components = tuple(map(components, particles.fields))
         self.rho0 = filled(ti.f64, np.array([material.rho0 for material in materials]))
         self.bulk = filled(ti.f64, np.array([material.eos.bulk_modulus() for material in materials]))
         self.shear = filled(ti.f64, np.array([material.shear_modulus for material in materials]))
@@ -181,24 +182,8 @@ class Ledger:
             density = 1.0 / (1.0 + self.value(self.fields.j, p))
             ti.atomic_max(self.density[None], density)
             ti.atomic_max(self.compression[None], (1.0 + self.value(self.fields.plastic_dilation, p)) * density)
-        for field in ti.static(self.particles.fields):
+        for field in ti.static(self.components):
             for p in range(count):
-                self.check_entry(field, p)
-
-    @ti.func
-    def check_entry(self, field: ti.template(), p):
-        """Keep whether a number of an entry is not finite."""
-        if ti.static(rank(field) == 0):
-            self.check_number(field[p])
-        elif ti.static(rank(field) == 1):
-            for i in ti.static(range(field.n)):
-                self.check_number(field[p][i])
-        else:
-            for i, j in ti.static(ti.ndrange(field.n, field.m)):
-                self.check_number(field[p][i, j])
-
-    @ti.func
-    def check_number(self, number):
-        """Keep whether a number is not finite."""
-        if not ti.abs(ti.cast(number, ti.f64)) <= self.largest[None]:
-            self.not_finite[None] = 1.0
+                for numbers in ti.static(field):
+                    if not ti.abs(ti.cast(numbers[p], ti.f64)) <= self.largest[None]:
+                        self.not_finite[None] = 1.0

@@ -11,7 +11,9 @@ from dask.distributed import LocalCluster
 from campaigns import cluster, devices
 from campaigns.cli import _gpus
 from campaigns.cluster import Resources, connect
-from campaigns.devices import CUDA, RESOURCE, VULKAN, one_device, visible
+from campaigns.devices import RESOURCE, one_device, visible
+from engine.device.options import CUDA_DEVICES as CUDA
+from engine.device.options import VULKAN_DEVICE as VULKAN
 from engine.device.options import Arch
 from engine.errors import SceneError
 
