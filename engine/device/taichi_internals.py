@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from taichi.lang import kernel_impl
+from taichi.lang.ast import ast_transformer_utils
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 from taichi.lang.field import Field
 from taichi.lang.impl import current_cfg, get_runtime
@@ -19,10 +21,12 @@ __all__ = [
     "ASTTransformerContext",
     "Field",
     "StructField",
+    "ast_transformer_utils",
     "compiled",
     "current_cfg",
     "is_arch_supported",
     "is_kernel",
+    "kernel_impl",
     "launch",
     "to_numpy_type",
 ]

@@ -1,15 +1,18 @@
 """Kernels are translated faster, and what Taichi says of a wrong one stays the same."""
 
 import ast
+import textwrap
 from importlib.util import find_spec, module_from_spec
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 import taichi as ti
+from hypothesis import given
+from hypothesis import strategies as st
 
-from engine.device.source_positions import source_position
-from engine.device.taichi_internals import ASTTransformerContext
+from engine.device.source_positions import LineWrapper, source_position
+from engine.device.taichi_internals import ASTTransformerContext, kernel_impl
 
 SOURCE = ["def halved(x):", "    y = x / 2.0", "    return y"]
 FIRST, SECOND = ast.parse("\n".join(SOURCE)).body[0].body
@@ -47,9 +50,21 @@ def test_positions_of_other_code_are_told_apart(other: dict[str, object]) -> Non
     assert source_position(Inlined(), SECOND) != here
 
 
+@given(text=st.text(alphabet=st.sampled_from("ab-. \t\n\xa0\u00e9"), max_size=30), width=st.integers(1, 30))
+def test_lines_are_wrapped_as_taichi_does(text: str, width: int) -> None:
+    assert LineWrapper(width=width).wrap(text) == textwrap.TextWrapper(width=width).wrap(text)
+
+
 @ti.func
 def halved(x):
     return x / 2.0
+
+
+@pytest.mark.usefixtures("taichi")
+def test_the_source_of_a_function_is_looked_up_once() -> None:
+    lines, start = kernel_impl.getsourcelines(halved.func.func)
+    assert kernel_impl.getsourcelines(halved.func.func)[0] is lines
+    assert lines[1] == "def halved(x):\n" and start > 1
 
 
 def error() -> str:

@@ -1,6 +1,7 @@
 """The private names of Taichi that the engine uses exist in the installed version, with their meaning."""
 
 import ast
+import inspect
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,12 @@ from engine.device.taichi_internals import (
     ASTTransformerContext,
     Field,
     StructField,
+    ast_transformer_utils,
     compiled,
     current_cfg,
     is_arch_supported,
     is_kernel,
+    kernel_impl,
     launch,
     to_numpy_type,
 )
@@ -55,6 +58,13 @@ def test_types_of_the_device_have_types_of_the_host():
 def test_the_running_architecture_is_known():
     assert current_cfg().arch == ti.cpu and is_arch_supported(ti.cpu)
     assert not on_gpu()
+
+
+def test_the_compiler_reads_source_code_by_the_names_that_are_cached():
+    reads, tells = inspect.getsource(kernel_impl), inspect.getsource(ast_transformer_utils)
+    for call in ("= getsourcefile(", "= getsourcelines(", "textwrap.fill(", "textwrap.dedent("):
+        assert call in reads
+    assert "TextWrapper(" in tells and reads.count("textwrap.") == 2, "nothing else of textwrap is in use"
 
 
 def test_kernels_are_known_by_their_mark():
