@@ -5,6 +5,7 @@ RUNS ?= runs
 WORKERS ?=
 THREADS ?=
 OPTIONS ?=
+BASE ?= HEAD
 PYTHON ?= $(shell for candidate in python3 python3.13 python3.12 python3.11; do \
 	$$candidate -c 'import sys, venv, ensurepip; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' \
 	2>/dev/null && echo $$candidate && break; done)
@@ -18,7 +19,7 @@ THEN = ; code=$$?; [ $$code -gt 1 ] || $(1); drawn=$$?; [ $$code -ne 0 ] || code
 THEN_PLOT = $(call THEN,$(MAKE) --no-print-directory plots)
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign resume plan status plots accuracy comparison stability test test-slow bench bench-gpu bench-gravity lint clean
+.PHONY: help install campaign resume plan status plots accuracy comparison stability test test-slow bench bench-compare bench-gpu bench-gravity lint clean
 
 help: ## explain all targets
 	@echo 'make TARGET [STUDY=quick] [RUNS=runs] [WORKERS=n] [THREADS=n] [OPTIONS=...]'
@@ -66,6 +67,9 @@ test-slow: $(INSTALLED) ## run the tests that take minutes
 
 bench: $(INSTALLED) ## time the engine and compare it with the usual way and the machine's limits
 	@$(RUN) tests.benchmarks --out '$(RUNS)/bench.json'
+
+bench-compare: $(INSTALLED) ## time the steps of another commit and of this code in turns: BASE=commit
+	@$(RUN) tests.benchmarks.compare '$(BASE)' $(OPTIONS)
 
 bench-gpu: $(INSTALLED) ## time steps and cases on a GPU, repeat and verify them: OPTIONS="--arch cuda"
 	@$(RUN) tests.benchmarks.gpu --out '$(RUNS)/bench-gpu' $(OPTIONS)

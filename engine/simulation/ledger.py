@@ -182,8 +182,8 @@ class Ledger:
             density = 1.0 / (1.0 + self.value(self.fields.j, p))
             ti.atomic_max(self.density[None], density)
             ti.atomic_max(self.compression[None], (1.0 + self.value(self.fields.plastic_dilation, p)) * density)
-        for field in ti.static(self.components):
-            for p in range(count):
+        for p in range(count):
+            for field in ti.static(self.components):
                 for numbers in ti.static(field):
                     if not ti.abs(ti.cast(numbers[p], ti.f64)) <= self.largest[None]:
                         self.not_finite[None] = 1.0
