@@ -5,7 +5,6 @@ directories are therefore reported at once.
 """
 
 import logging
-import os
 import sys
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
@@ -15,7 +14,7 @@ from typing import Annotated, NoReturn
 import typer
 from rich.console import Console, RenderableType
 
-from engine.device.options import Arch, choose
+from engine.device.options import Arch, choose, usable_cores
 from engine.errors import (
     MEMORY_IS_FULL,
     ExitCode,
@@ -40,7 +39,7 @@ application = typer.Typer(
 TABLE_WIDTH = 130
 """Least width of a printed table [characters], also where the output is not a terminal."""
 
-CORES = os.cpu_count() or 1
+CORES = usable_cores()
 
 Threads = Annotated[int, typer.Option(min=1, help="CPU threads.")]
 Device = Annotated[Arch, typer.Option(help="Device.")]

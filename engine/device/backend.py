@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from engine.device.options import VARIABLE, chosen
+from engine.device.options import VARIABLE, chosen, usable_cores
 from engine.device.source_positions import cache_source_positions
 from engine.device.taichi_internals import current_cfg, is_arch_supported, to_numpy_type
 from engine.errors import SceneError
@@ -47,7 +47,7 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
 
     Args:
         arch: `cpu`, `cuda`, `vulkan`, or `gpu` for the one of both that there is.
-        threads: CPU threads; all cores if `None`.
+        threads: CPU threads; all cores that this process may use if `None`.
 
     Raises:
         SceneError: the device is not available.
@@ -59,7 +59,7 @@ def start(arch: str = "cpu", threads: int | None = None) -> None:
             default_fp=Real,
             default_ip=ti.i32,
             fast_math=False,
-            cpu_max_num_threads=threads or os.cpu_count() or 1,
+            cpu_max_num_threads=threads or usable_cores(),
             offline_cache=True,
             offline_cache_file_path=str(_cache_directory()),
             log_level=ti.ERROR,

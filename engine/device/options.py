@@ -29,6 +29,14 @@ VARIABLE = "ENGINE_PRECISION"
 """Environment variable of the precision, for this process and those it starts."""
 
 
+def usable_cores() -> int:
+    """Return the number of CPU cores that this process may use: those of its affinity mask where the system has one.
+
+    A batch system or `taskset` gives a process some of the cores of a machine.
+    """
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def choose(precision: Precision) -> None:
     """Set the precision of the device modules, if they are not imported yet."""
     os.environ[VARIABLE] = precision

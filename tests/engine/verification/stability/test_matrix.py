@@ -1,6 +1,5 @@
 """The matrix in processes of its own ends as recorded."""
 
-import os
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
@@ -8,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from engine.cli import application
+from engine.device.options import usable_cores
 from engine.verification.stability import matrix
 from engine.verification.stability.cases import all_cases
 from engine.verification.stability.outcome import STABLE, failure
@@ -40,6 +40,6 @@ def test_a_directory_that_exists_is_refused(tmp_path: Path, monkeypatch: pytest.
 
 @pytest.mark.slow
 def test_the_whole_matrix_ends_as_recorded(tmp_path: Path) -> None:
-    outcomes = list(matrix.run_all(tmp_path, os.cpu_count() or 1))
+    outcomes = list(matrix.run_all(tmp_path, usable_cores()))
     assert [(o.group, o.name) for o in outcomes if not o.acceptable] == []
     assert [o.verdict for o in outcomes] == recorded()["verdict"].tolist()
