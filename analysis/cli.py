@@ -76,8 +76,8 @@ def _tell(results: xr.Dataset, text: str, written: list[Path]) -> None:
 
 
 def _fail_on_damage(results: xr.Dataset) -> None:
-    """Exit with code 1 when a job is damaged, also one that says it is done."""
-    if (results["state"] == JobState.CORRUPT).any():
+    """Exit with code 1 when a job is damaged or cannot be read, also one that says it is done."""
+    if results["state"].isin([JobState.CORRUPT, JobState.UNREADABLE]).any():
         raise typer.Exit(ExitCode.FAILED)
 
 

@@ -15,8 +15,8 @@ from engine.job.storage import write_json, write_text
 
 _ELSEWHERE = "choose another results directory with RUNS=DIR (--runs DIR)"
 _ANEW = (
-    "delete this file and run the study again with the version of the code that wrote it: it is written anew, and jobs "
-    "whose ids are the same are kept"
+    "move this file away and run the study again with the version of the code that wrote it: it is written anew, and "
+    "jobs whose ids are the same are kept"
 )
 _KEEP = f"of another version, or changed by hand: keep it, because it describes the jobs there, and {_ELSEWHERE}"
 _MOST = 3

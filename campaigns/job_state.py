@@ -1,4 +1,4 @@
-"""How each job stands, read from its directory, and what a run does with it; a damaged directory is a state as well."""
+"""How each job stands, read from its directory, and what a run does with it; what cannot be read is a state as well."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,8 +6,9 @@ from pathlib import Path
 from campaigns.campaign import Campaign
 from campaigns.directory import CampaignDirectory
 from campaigns.job_names import belongs_to
-from engine.errors import JobError
+from engine.errors import JobError, UnavailableError
 from engine.job.directory import JobDirectory, JobState, Status
+from engine.job.storage import NO_FILE, read_or_unavailable
 
 
 @dataclass(frozen=True)
@@ -35,20 +36,22 @@ def states(directory: CampaignDirectory, campaign: Campaign) -> list[TrackedJob]
 
 
 def status_of(job_directory: Path) -> Status:
-    """Read how one job stands now; it is `corrupt`, with the reason, when that cannot be told."""
+    """Read how one job stands now; it is `unreadable` or `corrupt`, with the reason, when that cannot be told."""
     try:
-        _require_own_scene(job_directory)
-        return _sound_status(JobDirectory(job_directory))
-    except JobError as error:
+        with read_or_unavailable(job_directory):
+            _require_own_scene(job_directory)
+            return _sound_status(JobDirectory(job_directory))
+    except UnavailableError as error:
+        return Status(state=JobState.UNREADABLE, reason=" ".join(str(error).split()))
+    except (JobError, *NO_FILE) as error:
         return Status(state=JobState.CORRUPT, reason=" ".join(str(error).split()))
-    except OSError as error:
-        return Status(state=JobState.CORRUPT, reason=f"{job_directory}: cannot be read: {error}")
 
 
 def _require_own_scene(job_directory: Path) -> None:
     path = job_directory / "scene.json"
-    if path.is_file() and not belongs_to(job_directory.name, path.read_bytes()):
-        raise JobError(f"{path}: is not the scene this job was made for")
+    with read_or_unavailable(path):
+        if path.is_file() and not belongs_to(job_directory.name, path.read_bytes()):
+            raise JobError(f"{path}: is not the scene this job was made for")
 
 
 def _sound_status(job: JobDirectory) -> Status:
@@ -92,5 +95,7 @@ def decide(status: Status, retry_failed: bool) -> Decision:
             return Decision(False, "finished")
         case JobState.RUNNING:
             return Decision(False, f"being run by process {status.pid} on {status.host}")
+        case JobState.UNREADABLE:
+            return Decision(False, status.reason or "cannot be read now")
         case JobState.CORRUPT | JobState.MISSING:
-            return Decision(False, f"{status.reason}; delete the directory of this job to compute it anew")
+            return Decision(False, f"{status.reason}; move the directory of this job away to compute it anew")

@@ -27,11 +27,13 @@ _COLOURS = {
     JobState.RUNNING: "cyan",
     JobState.FAILED: "red",
     JobState.INTERRUPTED: "yellow",
+    JobState.UNREADABLE: "magenta",
     JobState.CORRUPT: "magenta",
 }
 _SHOWN_FIRST = (
     JobState.RUNNING,
     JobState.CORRUPT,
+    JobState.UNREADABLE,
     JobState.FAILED,
     JobState.INTERRUPTED,
     JobState.PENDING,

@@ -22,6 +22,7 @@ from engine.errors import (
     JobError,
     RunFault,
     SceneError,
+    UnavailableError,
     in_words,
     is_out_of_memory,
 )
@@ -199,6 +200,8 @@ def _errors_as_exit_codes(source: Path) -> Iterator[None]:
         yield
     except JobBusyError as error:
         _exit(str(error), ExitCode.BUSY)
+    except UnavailableError as error:
+        _exit(str(error), ExitCode.FAILED)
     except (SceneError, JobError) as error:
         _exit(str(error), ExitCode.BAD_INPUT)
     except RunFault as fault:

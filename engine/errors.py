@@ -31,6 +31,10 @@ class JobBusyError(JobError):
     """Another process runs the job."""
 
 
+class UnavailableError(JobError):
+    """The system refuses to read a file of a job now; its content may be sound."""
+
+
 def in_words(error: OSError, path: object = "") -> str:
     """Return one line that names the file and what is wrong with it.
 

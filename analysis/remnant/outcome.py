@@ -17,13 +17,13 @@ from analysis.remnant.particles import Integers, Particles, read_particles, snap
 from analysis.remnant.settling import recent_changes
 from analysis.remnant.spin import spin_period
 from analysis.remnant.variables import DAMAGED, DRIFTS, UndescribedError, described
-from engine.errors import JobError, RunFault, SceneError
+from engine.errors import JobError, RunFault, SceneError, UnavailableError
 from engine.job.directory import JobDirectory, JobState
 from engine.scene.scene import Scene, is_hash_of, scene_in
 
 Numbers = dict[str, float]
 
-ANEW = "delete the directory of this job and run the study again to compute it anew"
+ANEW = "move the directory of this job away and run the study again to compute it anew"
 """What to do with a job whose files are damaged."""
 
 FOREIGN = "keep it: it may be sound, and the version that computed it, named in provenance.json, can measure it"
@@ -67,7 +67,7 @@ Outcomes = dict[str, Outcome]
 
 
 def outcome(job: JobDirectory, physics_version: int) -> Outcome:
-    """The outcome of a job; one that cannot be read is `corrupt` and raises nothing.
+    """The outcome of a job; one that cannot be read is `unreadable` or `corrupt` and raises nothing.
 
     Args:
         job: the job directory.
@@ -90,6 +90,8 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
         return Outcome(job, JobState.FAILED, _line(fault))
     except SceneError as error:
         return _foreign(job, _line(error))
+    except UnavailableError as error:
+        return Outcome(job, JobState.UNREADABLE, _line(error))
     except JobError as error:
         return Outcome(job, JobState.CORRUPT, f"{_line(error)}; {ANEW}")
     except (UndescribedError, MemoryError):

@@ -13,6 +13,7 @@ MEMBERS = ("resolution", "seed")
 
 _WORST_FIRST = (
     JobState.CORRUPT,
+    JobState.UNREADABLE,
     JobState.FAILED,
     JobState.RUNNING,
     JobState.INTERRUPTED,

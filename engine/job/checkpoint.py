@@ -5,7 +5,7 @@ from pathlib import Path
 import xarray as xr
 
 from engine import PHYSICS_VERSION
-from engine.errors import JobError
+from engine.errors import JobError, UnavailableError
 from engine.job.directory import JobDirectory
 from engine.job.storage import is_finite, read_dataset, write_dataset
 from engine.scene.scene import Scene, is_hash_of
@@ -83,11 +83,17 @@ def _dimensions(name: str, ndim: int) -> tuple[str, ...]:
 
 
 def _readable(path: Path) -> xr.Dataset | None:
-    """Content of a checkpoint that says where it is from; `None` where it is missing or damaged."""
+    """Content of a checkpoint that says where it is from; `None` where it is missing or damaged.
+
+    Raises:
+        UnavailableError: it cannot be read now; without it the run would begin anew.
+    """
     if not path.exists():
         return None
     try:
         dataset = read_dataset(path)
+    except UnavailableError:
+        raise
     except JobError:
         return None
     return dataset if {*ORIGIN} <= {*dataset.attrs} else None

@@ -14,17 +14,18 @@ import psutil
 from pydantic import TypeAdapter, ValidationError
 
 from engine.errors import Fault, JobBusyError, JobError
-from engine.job.storage import remove_partial_files, write_json
+from engine.job.storage import NO_FILE, read_or_unavailable, remove_partial_files, write_json
 
 
 class JobState(StrEnum):
-    """How a job stands; only readers of a campaign see `corrupt` and `missing`."""
+    """How a job stands; only readers of a campaign see `unreadable`, `corrupt` and `missing`."""
 
     PENDING = "pending"
     RUNNING = "running"
     INTERRUPTED = "interrupted"
     DONE = "done"
     FAILED = "failed"
+    UNREADABLE = "unreadable"
     CORRUPT = "corrupt"
     MISSING = "missing"
 
@@ -141,17 +142,19 @@ class JobDirectory:
         """Return how the job stands now: `interrupted` if its process has died, `pending` if it was never run.
 
         Raises:
-            JobError: status.json is damaged.
+            UnavailableError: status.json cannot be read now.
+            JobError: it is damaged.
         """
         try:
-            status = _STATUS.validate_json(self.status_file.read_bytes())
+            with read_or_unavailable(self.status_file):
+                status = _STATUS.validate_json(self.status_file.read_bytes())
         except FileNotFoundError:
             return Status(state=JobState.PENDING)
         except ValidationError as error:
             issue = error.errors(include_url=False)[0]
             key = "".join(f"'{part}': " for part in issue["loc"])
             raise JobError(f"{self.status_file}: damaged: {key}{issue['msg']}") from error
-        except OSError as error:
+        except NO_FILE as error:
             raise JobError(f"{self.status_file}: damaged: {error}") from error
         if status.state not in WRITTEN:
             raise JobError(f"{self.status_file}: damaged: unknown state '{status.state}'")
@@ -180,12 +183,18 @@ class JobDirectory:
 
         Raises:
             JobBusyError: another process runs this job.
+            JobError: the file system has no locks.
         """
         with (self.path / "lock").open("w") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError as error:
+            except BlockingIOError as error:
                 raise self._busy(self.status()) from error
+            except OSError as error:
+                raise JobError(
+                    f"{lock.name}: cannot be locked: {error.strerror}; without flock two processes could run one job: "
+                    "put the results on another file system, or mount this one with locks"
+                ) from error
             status = self.status()
             if status.state == JobState.RUNNING and status.pid != os.getpid():
                 raise self._busy(status)

@@ -15,7 +15,15 @@ from xarray import Dataset
 
 from engine import PHYSICS_VERSION
 from engine.device import backend
-from engine.errors import MEMORY_IS_FULL, Fault, GuardFault, JobError, SceneError, is_out_of_memory
+from engine.errors import (
+    MEMORY_IS_FULL,
+    Fault,
+    GuardFault,
+    JobError,
+    SceneError,
+    UnavailableError,
+    is_out_of_memory,
+)
 from engine.job.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
 from engine.job.directory import HEARTBEAT_PERIOD, JobDirectory, JobState, Status
 from engine.job.history import History
@@ -150,9 +158,15 @@ class Session:
         self._report(JobState.RUNNING)
 
     def _written_history(self) -> Dataset | None:
-        """History that an earlier session wrote, always before its checkpoint; `None` if it cannot be read."""
+        """History that an earlier session wrote, always before its checkpoint; `None` if it is missing or damaged.
+
+        Raises:
+            UnavailableError: it cannot be read now; without it its rows would be lost.
+        """
         try:
             return read_dataset(self.job.history)
+        except UnavailableError:
+            raise
         except JobError:
             return None
 

@@ -4,16 +4,25 @@ import errno
 import json
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from engine.errors import JobError
+from engine.errors import JobError, UnavailableError, in_words
 
 Attributes = Mapping[str, str | int | float]
 """Global attributes of a data set."""
+
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # files are replaced as a whole; network mounts refuse locks
+
+NO_FILE = (FileNotFoundError, IsADirectoryError, NotADirectoryError)
+"""Errors of the system where there is no file to wait for."""
+
+PIECE = 1 << 20
+"""Bytes that are read at once."""
 
 FULL = 1 << 20
 """Free space [bytes] below which a disk counts as full."""
@@ -90,13 +99,37 @@ def read_dataset(path: Path) -> xr.Dataset:
     """Read a whole data set into memory.
 
     Raises:
+        UnavailableError: the system refuses to read it now.
         JobError: the file is missing or not a complete netCDF file.
     """
     try:
         with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as dataset:
             return dataset.load()
     except (OSError, ValueError, KeyError, RuntimeError) as error:
+        _require_available(path)
         raise JobError(f"{path}: cannot be read as netCDF: {error}") from error
+
+
+def _require_available(path: Path) -> None:
+    """Read all bytes of a file, whatever they are: netCDF does not tell a damaged file from a disk that fails."""
+    with read_or_unavailable(path), suppress(*NO_FILE), path.open("rb") as stream:
+        while stream.read(PIECE):
+            pass
+
+
+@contextmanager
+def read_or_unavailable(path: Path) -> Iterator[None]:
+    """Say of an error of the system in the `with` block that the file cannot be read now.
+
+    Raises:
+        UnavailableError: instead of any `OSError` but those of `NO_FILE`.
+    """
+    try:
+        yield
+    except NO_FILE:
+        raise
+    except OSError as error:
+        raise UnavailableError(f"{in_words(error, path)}: cannot be read now; it is kept: try again later") from error
 
 
 def is_finite(dataset: xr.Dataset) -> bool:

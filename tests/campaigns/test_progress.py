@@ -15,7 +15,7 @@ from engine.job.directory import WRITTEN, JobState, Status
 ANY_NUMBER = st.floats(allow_nan=True, allow_infinity=True)
 ANY_STATUS = st.builds(
     Status,
-    state=st.sampled_from([*WRITTEN, JobState.CORRUPT]),
+    state=st.sampled_from([*WRITTEN, JobState.UNREADABLE, JobState.CORRUPT]),
     reason=st.sampled_from(["", "[bold]a[/] reason", "a " * 200]),
     time=ANY_NUMBER,
     end_time=ANY_NUMBER,

@@ -16,6 +16,7 @@ from campaigns.expansion import expand
 from campaigns.runner import CampaignRun
 from campaigns.study import Study
 from engine.device.options import Arch
+from tests.helpers.jobs import BAD_DISK
 
 Tree = Callable[[Path], dict[str, bytes]]
 
@@ -197,6 +198,23 @@ def test_corrupt_job_stops_no_other(command, write_study, runs, file, content, m
     shown = command("status", write_study())
     assert shown.code == 0
     assert "corrupt" in shown.out
+
+
+@pytest.mark.parametrize("file", ["status.json", "scene.json"])
+def test_a_job_that_cannot_be_read_now_is_kept_and_tried_again(command, write_study, runs, file, monkeypatch):
+    monkeypatch.setenv("FAKE_CRASH", "v0")
+    command("run", write_study())
+    monkeypatch.delenv("FAKE_CRASH")
+    path, well = job(runs, "v0200_a05") / file, job(runs, "v0200_a05") / "well"
+    path.rename(well)
+    path.symlink_to(BAD_DISK)
+    result = command("run", write_study())
+    assert result.code == 1
+    assert "1 done, 1 unreadable" in result.out
+    assert f"{file}: Input/output error: cannot be read now; it is kept" in result.out
+    assert "away" not in result.out and "delete" not in result.out
+    well.replace(path)
+    assert command("resume", write_study()).code == 0
 
 
 def test_resume_needs_a_campaign(command, write_study, runs):

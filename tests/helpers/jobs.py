@@ -14,6 +14,9 @@ from engine.job.directory import JobDirectory
 from engine.job.storage import read_dataset
 from engine.scene.collision import Collision
 
+BAD_DISK = Path("/proc/self/mem")
+"""Linux answers a read of its first byte with EIO, as a disk that fails."""
+
 
 def write_job(directory: Path, **changes: Any) -> Path:
     """A directory with a collision of 2 x 60 particles that takes a few seconds."""

@@ -25,6 +25,7 @@ from tests.helpers.fake_jobs import (
     write_dataset,
     write_job,
 )
+from tests.helpers.jobs import BAD_DISK
 
 AXES = (1.2e5, 1e5, 9e4)
 POINTS, SPACING = lattice_ellipsoid(AXES, 400)
@@ -172,7 +173,7 @@ FAULTS = {
     "status with a list": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": [1]}'), *TIME),
     "status with a text": (lambda job: (job / "status.json").write_text('{"state": "done", "wall_time": "x"}'), *TIME),
     "state": (lambda job: (job / "status.json").write_text('{"state": "well"}'), "corrupt", "state"),
-    "advice": (truncate, "corrupt", "delete the directory of this job"),
+    "advice": (truncate, "corrupt", "move the directory of this job away"),
     "no history": (lambda job: (job / "history.nc").unlink(), "corrupt", "history.nc"),
     "short history": (
         lambda job: write_dataset(job / "history.nc", history(np.zeros(2)).drop_vars("mass")),
@@ -362,3 +363,14 @@ def test_a_job_off_the_axes_is_refused(tmp_path: Path) -> None:
     write_campaign(tmp_path, {"angle": [5.0]}, [({"angle": 15.0}, collision())])
     with pytest.raises(SceneError, match="job '0' has no place on the axis 'angle'"):
         collect(tmp_path)
+
+
+def test_a_job_that_cannot_be_read_now_is_kept(tmp_path: Path) -> None:
+    job = one_job(tmp_path)
+    (job / "final.nc").rename(job / "well.nc")
+    (job / "final.nc").symlink_to(BAD_DISK)
+    found = collect(tmp_path)
+    assert found["state"].item() == "unreadable"
+    assert "cannot be read now; it is kept" in str(found["reason"].item())
+    (job / "well.nc").replace(job / "final.nc")
+    assert collect(tmp_path)["state"].item() == "done"

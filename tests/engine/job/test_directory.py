@@ -1,3 +1,4 @@
+import errno
 import json
 import multiprocessing
 import os
@@ -140,6 +141,18 @@ def test_a_job_that_runs_on_another_host_is_refused(job: JobDirectory):
     edit_status(job, host="elsewhere", pid=1)
     with pytest.raises(JobBusyError, match="process 1 on elsewhere"), job.claim():
         pass
+
+
+@pytest.mark.parametrize("code", [errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS])
+def test_a_file_system_without_locks_is_told_from_a_busy_job(job: JobDirectory, monkeypatch, code: int):
+    def refuse(*arguments: object) -> None:
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    told = f"lock: cannot be locked: {os.strerror(code)}; .*another file system"
+    with pytest.raises(JobError, match=told) as error, job.claim():
+        pass
+    assert not isinstance(error.value, JobBusyError)
 
 
 def test_a_claim_is_free_at_once_after_its_process_was_killed(job: JobDirectory):

@@ -19,6 +19,7 @@ from engine.job.session import Options, run_job
 from engine.job.storage import read_dataset, write_dataset
 from engine.simulation.simulation import Simulation
 from tests.helpers.jobs import (
+    BAD_DISK,
     assert_same,
     assert_same_results,
     engine_command,
@@ -116,6 +117,25 @@ def test_a_damaged_checkpoint_falls_back_to_the_one_before(
     directory = copy_of(killed, tmp_path)
     job = JobDirectory(directory)
     damage(job.checkpoint if job.checkpoint.exists() else job.previous_checkpoint)
+    assert run_engine(directory).returncode == 0
+    assert_same_results(directory, reference)
+
+
+@pytest.mark.parametrize("name", ["checkpoint.nc", "history.nc", "status.json"])
+def test_a_file_that_cannot_be_read_now_stops_the_run_and_is_kept(
+    tmp_path: Path, reference: Path, terminated: Path, name: str
+) -> None:
+    """Nothing is begun anew while the disk fails; when it is well again, the run goes on to the same bits."""
+    directory = copy_of(terminated, tmp_path)
+    well = directory / f"well {name}"
+    (directory / name).rename(well)
+    (directory / name).symlink_to(BAD_DISK)
+    before = {path.name: path.read_bytes() for path in directory.glob("*.nc") if not path.is_symlink()}
+    refusal = run_engine(directory)
+    assert refusal.returncode == ExitCode.FAILED
+    assert f"{name}: Input/output error: cannot be read now; it is kept" in refusal.stderr.replace("\n", " ")
+    assert all((directory / other).read_bytes() == content for other, content in before.items())
+    well.replace(directory / name)
     assert run_engine(directory).returncode == 0
     assert_same_results(directory, reference)
 

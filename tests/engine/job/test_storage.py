@@ -1,9 +1,12 @@
 import errno
+import fcntl
 import json
 import multiprocessing
 import os
 import re
 import signal
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,7 +14,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from engine.errors import JobError
+from engine.errors import JobError, UnavailableError
 from engine.job.storage import (
     is_finite,
     read_dataset,
@@ -20,6 +23,7 @@ from engine.job.storage import (
     write_dataset,
     write_json,
 )
+from tests.helpers.jobs import BAD_DISK
 
 
 def dataset(count: int = 50) -> xr.Dataset:
@@ -28,6 +32,46 @@ def dataset(count: int = 50) -> xr.Dataset:
         {"x": (("particle", "space"), generator.normal(size=(count, 3))), "body": ("particle", np.arange(count))},
         attrs={"time": 1.5, "note": "text"},
     )
+
+
+@pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_bytes(path.read_bytes()[:1000])])
+def test_a_missing_or_damaged_file_is_told_from_one_that_cannot_be_read_now(tmp_path: Path, damage) -> None:
+    path = tmp_path / "data.nc"
+    write_dataset(path, dataset())
+    damage(path)
+    with pytest.raises(JobError) as raised:
+        read_dataset(path)
+    assert not isinstance(raised.value, UnavailableError)
+    path.unlink(missing_ok=True)
+    path.symlink_to(BAD_DISK)
+    with pytest.raises(UnavailableError, match=r"data\.nc: Input/output error: cannot be read now; it is kept"):
+        read_dataset(path)
+
+
+@pytest.mark.parametrize("code", [errno.EACCES, errno.ESTALE, errno.EMFILE, errno.ENOLCK])
+def test_whatever_the_system_refuses_is_unavailable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: int) -> None:
+    def refuse(*arguments: object, **named: object) -> None:
+        raise OSError(code, os.strerror(code))
+
+    path = tmp_path / "data.nc"
+    write_dataset(path, dataset())
+    monkeypatch.setattr(xr, "open_dataset", refuse)
+    monkeypatch.setattr(Path, "open", refuse)
+    with pytest.raises(UnavailableError, match=os.strerror(code)):
+        read_dataset(path)
+
+
+def test_a_file_that_another_process_has_locked_is_read(tmp_path: Path) -> None:
+    """HDF5 asks for a lock, which a network mount may refuse; files are replaced as a whole, so none is needed."""
+    path = tmp_path / "data.nc"
+    write_dataset(path, dataset())
+    code = "import sys; from pathlib import Path; from engine.job.storage import read_dataset as read; "
+    environment = {name: value for name, value in os.environ.items() if name != "HDF5_USE_FILE_LOCKING"}
+    with path.open("rb") as stream:
+        fcntl.flock(stream, fcntl.LOCK_EX)
+        command = [sys.executable, "-c", code + "print(read(Path(sys.argv[1])).time)", str(path)]
+        told = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+    assert told.stdout.strip() == "1.5"
 
 
 def failing(error: Exception):
