@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from engine.errors import JobError, RunFault
 from engine.job.directory import JobDirectory
-from engine.job.storage import is_finite, read_dataset
+from engine.job.storage import is_finite, read_dataset, require_available
 from engine.quantities import PARTICLES
 
 Array = NDArray[np.float64]
@@ -98,7 +98,8 @@ def snapshots(job: JobDirectory) -> list[tuple[float, Path]]:
     """Time [s] and file of every snapshot, in order of time.
 
     Raises:
-        JobError: a snapshot cannot be read.
+        UnavailableError: the system refuses to read a snapshot now.
+        JobError: one is damaged.
     """
     return sorted((_time(path), path) for path in job.snapshots.glob("*.nc"))
 
@@ -108,4 +109,5 @@ def _time(path: Path) -> float:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return float(dataset.attrs["time"])
     except (OSError, KeyError, ValueError, RuntimeError) as error:
+        require_available(path)
         raise JobError(f"{path}: not a snapshot: {error}") from error

@@ -15,7 +15,7 @@ from engine import PHYSICS_VERSION
 from engine.device.backend import Real
 from engine.device.options import CUDA_DEVICES, VULKAN_DEVICE
 from engine.job.directory import JobDirectory
-from engine.job.storage import write_json
+from engine.job.storage import NO_FILE, read_or_unavailable, write_json
 from engine.scene.scene import Scene
 
 PACKAGES = ("asteroid-collisions", "taichi", "numpy", "scipy", "xarray", "netCDF4", "pydantic")
@@ -31,6 +31,7 @@ def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> 
         threads: CPU threads.
 
     Raises:
+        UnavailableError: the file of earlier sessions cannot be read now.
         OSError: the file cannot be written.
     """
     sessions = [*_earlier_sessions(job), _session(arch, threads)]
@@ -45,8 +46,9 @@ def record_session(job: JobDirectory, scene: Scene, arch: str, threads: int) -> 
 
 def _earlier_sessions(job: JobDirectory) -> list[object]:
     try:
-        return list(json.loads(job.provenance.read_text(encoding="utf-8"))["sessions"])
-    except (OSError, ValueError, KeyError, TypeError):
+        with read_or_unavailable(job.provenance):
+            return list(json.loads(job.provenance.read_text(encoding="utf-8"))["sessions"])
+    except (*NO_FILE, ValueError, KeyError, TypeError):
         return []
 
 

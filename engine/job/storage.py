@@ -106,12 +106,16 @@ def read_dataset(path: Path) -> xr.Dataset:
         with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as dataset:
             return dataset.load()
     except (OSError, ValueError, KeyError, RuntimeError) as error:
-        _require_available(path)
+        require_available(path)
         raise JobError(f"{path}: cannot be read as netCDF: {error}") from error
 
 
-def _require_available(path: Path) -> None:
-    """Read all bytes of a file, whatever they are: netCDF does not tell a damaged file from a disk that fails."""
+def require_available(path: Path) -> None:
+    """Read all bytes of a file, whatever they are: netCDF does not tell a damaged file from a disk that fails.
+
+    Raises:
+        UnavailableError: the system refuses to read it now.
+    """
     with read_or_unavailable(path), suppress(*NO_FILE), path.open("rb") as stream:
         while stream.read(PIECE):
             pass

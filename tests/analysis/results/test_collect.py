@@ -365,12 +365,18 @@ def test_a_job_off_the_axes_is_refused(tmp_path: Path) -> None:
         collect(tmp_path)
 
 
-def test_a_job_that_cannot_be_read_now_is_kept(tmp_path: Path) -> None:
-    job = one_job(tmp_path)
-    (job / "final.nc").rename(job / "well.nc")
-    (job / "final.nc").symlink_to(BAD_DISK)
+@pytest.mark.parametrize("name", ["final.nc", "history.nc", "status.json", "snapshots/0000000001.nc"])
+def test_a_job_that_cannot_be_read_now_is_kept(tmp_path: Path, name: str) -> None:
+    path = one_job(tmp_path) / name
+    path.parent.mkdir(exist_ok=True)
+    well = tmp_path / "well"
+    if path.exists():
+        path.rename(well)
+    path.symlink_to(BAD_DISK)
     found = collect(tmp_path)
     assert found["state"].item() == "unreadable"
-    assert "cannot be read now; it is kept" in str(found["reason"].item())
-    (job / "well.nc").replace(job / "final.nc")
+    assert f"{path}: Input/output error: cannot be read now; it is kept" in str(found["reason"].item())
+    path.unlink()
+    if well.exists():
+        well.rename(path)
     assert collect(tmp_path)["state"].item() == "done"

@@ -121,7 +121,7 @@ def test_a_damaged_checkpoint_falls_back_to_the_one_before(
     assert_same_results(directory, reference)
 
 
-@pytest.mark.parametrize("name", ["checkpoint.nc", "history.nc", "status.json"])
+@pytest.mark.parametrize("name", ["checkpoint.nc", "history.nc", "status.json", "provenance.json"])
 def test_a_file_that_cannot_be_read_now_stops_the_run_and_is_kept(
     tmp_path: Path, reference: Path, terminated: Path, name: str
 ) -> None:
