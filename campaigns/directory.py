@@ -72,7 +72,10 @@ class CampaignDirectory:
 
     def _write_scene(self, job: Job) -> None:
         path = self.path / job.directory / "scene.json"
-        if path.is_file():
+        try:
+            if path.is_file():
+                return
+        except OSError:  # the job is `unreadable`, and the others can go on
             return
         path.parent.mkdir(parents=True, exist_ok=True)
         write_text(path, scene_of(job.collision, job.id).canonical())

@@ -17,6 +17,7 @@ from campaigns.job_state import decide, status_of
 from campaigns.parent_death import tethered
 from engine.device.options import Arch
 from engine.errors import ExitCode
+from engine.job.directory import JobState
 
 ENGINE = (sys.executable, "-m", "engine")
 """Command that runs one job directory."""
@@ -49,8 +50,10 @@ class Worker(WorkerPlugin):  # type: ignore[misc]  # dask has no types
 
     def run(self, directory: Path, threads: int, arch: Arch, retry_failed: bool) -> EngineExit:
         """Run the engine on a job, unless nothing is left to do there; arguments as `run_job`."""
-        if not decide(status_of(directory), retry_failed).runs:
-            return EngineExit(ExitCode.BUSY)
+        status = status_of(directory)
+        if not decide(status, retry_failed).runs:
+            seen_here = status.state in (JobState.UNREADABLE, JobState.CORRUPT)
+            return EngineExit(ExitCode.FAILED, status.reason) if seen_here else EngineExit(ExitCode.BUSY)
         command = [*ENGINE, "run", str(directory), "--threads", str(threads), "--arch", arch]
         with (
             tempfile.TemporaryFile() as errors,

@@ -17,14 +17,18 @@ from analysis.remnant.particles import Integers, Particles, read_particles, snap
 from analysis.remnant.settling import recent_changes
 from analysis.remnant.spin import spin_period
 from analysis.remnant.variables import DAMAGED, DRIFTS, UndescribedError, described
-from engine.errors import JobError, RunFault, SceneError, UnavailableError
+from engine.errors import JobError, RunFault, SceneError, UnavailableError, in_words
 from engine.job.directory import JobDirectory, JobState
+from engine.job.storage import NO_FILE
 from engine.scene.scene import Scene, is_hash_of, scene_in
 
 Numbers = dict[str, float]
 
 ANEW = "move the directory of this job away and run the study again to compute it anew"
 """What to do with a job whose files are damaged."""
+
+LATER = "keep it, and try again later"
+"""What to do with a job of which a file cannot be read now."""
 
 FOREIGN = "keep it: it may be sound, and the version that computed it, named in provenance.json, can measure it"
 """What to do with a job whose scene or physics this version does not know."""
@@ -89,6 +93,8 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
     except RunFault as fault:
         return Outcome(job, JobState.FAILED, _line(fault))
     except SceneError as error:
+        if isinstance(error.__cause__, OSError) and not isinstance(error.__cause__, NO_FILE):
+            return Outcome(job, JobState.UNREADABLE, f"{_line(error)}; {LATER}")
         return _foreign(job, _line(error))
     except UnavailableError as error:
         return Outcome(job, JobState.UNREADABLE, _line(error))
@@ -96,6 +102,8 @@ def outcome(job: JobDirectory, physics_version: int) -> Outcome:
         return Outcome(job, JobState.CORRUPT, f"{_line(error)}; {ANEW}")
     except (UndescribedError, MemoryError):
         raise
+    except OSError as error:
+        return Outcome(job, JobState.UNREADABLE, f"{in_words(error, job.path)}; {LATER}")
     except Exception as error:  # whatever is wrong with one job must not hide the others
         return Outcome(job, JobState.CORRUPT, f"{type(error).__name__}: {_line(error)}; {UNREAD}")
 

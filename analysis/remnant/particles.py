@@ -109,5 +109,5 @@ def _time(path: Path) -> float:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return float(dataset.attrs["time"])
     except (OSError, KeyError, ValueError, RuntimeError) as error:
-        require_available(path)
+        require_available(path, error)
         raise JobError(f"{path}: not a snapshot: {error}") from error

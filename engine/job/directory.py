@@ -1,5 +1,6 @@
 """The job directory: its files, the process that runs it, and how far it is."""
 
+import errno
 import fcntl
 import os
 import socket
@@ -9,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from pathlib import Path
+from typing import TextIO
 
 import psutil
 from pydantic import TypeAdapter, ValidationError
@@ -32,6 +34,12 @@ class JobState(StrEnum):
 
 WRITTEN = (JobState.PENDING, JobState.RUNNING, JobState.INTERRUPTED, JobState.DONE, JobState.FAILED)
 """States that a run writes to status.json."""
+
+HELD = (errno.EAGAIN, errno.EACCES)
+"""Errors of `flock` where another process has the lock; the second is that of some network file systems."""
+
+NO_LOCKS = (errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS)
+"""Errors of `flock` where the file system has no locks."""
 
 HEARTBEAT_PERIOD = 2.0
 """Time [s] between two writes of status.json by a run."""
@@ -183,23 +191,30 @@ class JobDirectory:
 
         Raises:
             JobBusyError: another process runs this job.
+            UnavailableError: the lock cannot be had now for another reason.
             JobError: the file system has no locks.
         """
         with (self.path / "lock").open("w") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError as error:
-                raise self._busy(self.status()) from error
-            except OSError as error:
-                raise JobError(
-                    f"{lock.name}: cannot be locked: {error.strerror}; without flock two processes could run one job: "
-                    "put the results on another file system, or mount this one with locks"
-                ) from error
+            with read_or_unavailable(self.path / "lock"):
+                self._lock(lock)
             status = self.status()
             if status.state == JobState.RUNNING and status.pid != os.getpid():
                 raise self._busy(status)
             remove_partial_files(self.path)
             yield
+
+    def _lock(self, lock: TextIO) -> None:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            if error.errno in HELD:
+                raise self._busy(self.status()) from error
+            if error.errno in NO_LOCKS:
+                raise JobError(
+                    f"{lock.name}: cannot be locked: {error.strerror}; without flock two processes could run one job: "
+                    "put the results on another file system, or mount this one with locks"
+                ) from error
+            raise
 
     def _busy(self, status: Status) -> JobBusyError:
         by = f" by process {status.pid} on {status.host}" if status.pid else ""

@@ -88,10 +88,10 @@ def run_job(directory: Path, options: Options) -> Status:
 
 
 def _leave_word(job: JobDirectory, error: Exception) -> None:
-    """Write an unexpected error to log and status, unless the disk is full."""
+    """Write an unexpected error to log and status, unless the disk is full or fails."""
     log.exception("ended by an error")
     reason = MEMORY_IS_FULL if is_out_of_memory(error) else " ".join(f"{type(error).__name__}: {error}".split())
-    with suppress(OSError):
+    with suppress(OSError, JobError):
         job.write_status(replace(job.status(), state=JobState.INTERRUPTED, reason=reason))
 
 

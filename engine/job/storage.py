@@ -21,6 +21,9 @@ os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # files are replaced as
 NO_FILE = (FileNotFoundError, IsADirectoryError, NotADirectoryError)
 """Errors of the system where there is no file to wait for."""
 
+UNREAD = (OSError, ValueError, KeyError, RuntimeError)
+"""Errors of netCDF and xarray where a file is damaged or cannot be read."""
+
 PIECE = 1 << 20
 """Bytes that are read at once."""
 
@@ -102,23 +105,36 @@ def read_dataset(path: Path) -> xr.Dataset:
         UnavailableError: the system refuses to read it now.
         JobError: the file is missing or not a complete netCDF file.
     """
+    with suppress(*UNREAD):  # a second time: the disk may have failed for a moment
+        return _loaded(path)
     try:
-        with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as dataset:
-            return dataset.load()
-    except (OSError, ValueError, KeyError, RuntimeError) as error:
-        require_available(path)
+        return _loaded(path)
+    except UNREAD as error:
+        require_available(path, error)
         raise JobError(f"{path}: cannot be read as netCDF: {error}") from error
 
 
-def require_available(path: Path) -> None:
-    """Read all bytes of a file, whatever they are: netCDF does not tell a damaged file from a disk that fails.
+def _loaded(path: Path) -> xr.Dataset:
+    with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as dataset:
+        return dataset.load()
+
+
+def require_available(path: Path, error: Exception) -> None:
+    """Tell a file that the system refuses to read from a damaged one, which netCDF does not.
+
+    Args:
+        path: the file; all its bytes are read, whatever they are.
+        error: raised when it was read as netCDF, whose own numbers of errors are negative, or EINVAL.
 
     Raises:
         UnavailableError: the system refuses to read it now.
     """
-    with read_or_unavailable(path), suppress(*NO_FILE), path.open("rb") as stream:
-        while stream.read(PIECE):
-            pass
+    with read_or_unavailable(path), suppress(*NO_FILE):
+        if isinstance(error, OSError) and (error.errno or 0) > 0 and error.errno != errno.EINVAL:
+            raise error
+        with path.open("rb") as stream:
+            while stream.read(PIECE):
+                pass
 
 
 @contextmanager

@@ -71,10 +71,10 @@ def checkout(commit: str) -> Iterator[Path]:
 
 def main(
     base: Annotated[str, typer.Argument(help="Commit to compare with.")],
-    particles: Annotated[int, typer.Option(help="Particles of each body.")] = 20_000,
-    threads: Annotated[int, typer.Option(help="CPU threads of each version.")] = 1,
-    rounds: Annotated[int, typer.Option(help="Laps of each version.")] = 12,
-    steps: Annotated[int, typer.Option(help="Steps of a lap.")] = 10,
+    particles: Annotated[int, typer.Option(min=1, help="Particles of each body.")] = 20_000,
+    threads: Annotated[int, typer.Option(min=1, help="CPU threads of each version.")] = 1,
+    rounds: Annotated[int, typer.Option(min=1, help="Laps of each version.")] = 12,
+    steps: Annotated[int, typer.Option(min=1, help="Steps of a lap.")] = 10,
 ) -> None:
     """Time the steps of BASE and of the present code, lap by lap in turns, and tell their ratio."""
     table = Table("state", "start [s]", "ms per step, CPU", "present / base", "", title=f"{base} and the present code")

@@ -13,6 +13,7 @@ from campaigns.worker import EngineExit, Worker
 from engine.device.options import Arch
 from engine.errors import ExitCode
 from engine.job.directory import JobDirectory, JobState, Status
+from tests.helpers.jobs import BAD_DISK
 
 COUNTER = """
 import signal, sys, time
@@ -75,3 +76,10 @@ def test_a_job_that_another_process_runs_is_left_to_it(tmp_path: Path) -> None:
     JobDirectory(tmp_path).write_status(Status(state=JobState.RUNNING))
     assert Worker().run(tmp_path, 1, Arch.CPU, False) == EngineExit(ExitCode.BUSY)
     assert [path.name for path in tmp_path.iterdir()] == ["status.json"]
+
+
+def test_a_job_that_this_worker_cannot_read_is_not_sent_to_it_again(tmp_path: Path) -> None:
+    """The runner may see it well, on another machine: a busy job would be submitted for ever."""
+    (tmp_path / "status.json").symlink_to(BAD_DISK)
+    ended = Worker().run(tmp_path, 1, Arch.CPU, False)
+    assert ended.code == ExitCode.FAILED and "status.json: Input/output error: cannot be read now" in ended.reason

@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from engine.errors import JobBusyError, JobError
+from engine.errors import JobBusyError, JobError, UnavailableError
 from engine.job.directory import HEARTBEAT_LIMIT, JobDirectory, Status
 
 SPAWN = multiprocessing.get_context("spawn")
@@ -153,6 +153,18 @@ def test_a_file_system_without_locks_is_told_from_a_busy_job(job: JobDirectory, 
     with pytest.raises(JobError, match=told) as error, job.claim():
         pass
     assert not isinstance(error.value, JobBusyError)
+
+
+@pytest.mark.parametrize(
+    ("code", "kind"), [(errno.EAGAIN, JobBusyError), (errno.EACCES, JobBusyError), (errno.EIO, UnavailableError)]
+)
+def test_a_lock_that_another_has_is_told_from_a_disk_that_fails(job: JobDirectory, monkeypatch, code: int, kind):
+    def refuse(*arguments: object) -> None:
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    with pytest.raises(kind), job.claim():
+        pass
 
 
 def test_a_claim_is_free_at_once_after_its_process_was_killed(job: JobDirectory):

@@ -61,6 +61,34 @@ def test_whatever_the_system_refuses_is_unavailable(tmp_path: Path, monkeypatch:
         read_dataset(path)
 
 
+def test_a_disk_that_fails_for_a_moment_costs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where netCDF gives no reason of the system."""
+    path = tmp_path / "data.nc"
+    write_dataset(path, dataset())
+    opened, errors = xr.open_dataset, [OSError(-101, "NetCDF: HDF error"), OSError(errno.EIO, "Input/output error")]
+    for error in errors:
+        answers = iter([error])
+
+        def once(*arguments: object, answers=answers, **named: object) -> xr.Dataset:
+            for failure in answers:
+                raise failure
+            return opened(*arguments, **named)
+
+        monkeypatch.setattr(xr, "open_dataset", once)
+        assert read_dataset(path).attrs["time"] == 1.5
+
+
+def test_an_error_of_the_system_is_no_damage_though_the_bytes_can_be_read(tmp_path: Path, monkeypatch) -> None:
+    def refuse(*arguments: object, **named: object) -> None:
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    path = tmp_path / "data.nc"
+    write_dataset(path, dataset())
+    monkeypatch.setattr(xr, "open_dataset", refuse)
+    with pytest.raises(UnavailableError, match="Too many open files"):
+        read_dataset(path)
+
+
 def test_a_file_that_another_process_has_locked_is_read(tmp_path: Path) -> None:
     """HDF5 asks for a lock, which a network mount may refuse; files are replaced as a whole, so none is needed."""
     path = tmp_path / "data.nc"
