@@ -1,5 +1,6 @@
 """The figure of error against CPU time."""
 
+from collections.abc import Iterable
 from itertools import cycle
 
 import numpy as np
@@ -36,8 +37,7 @@ def error_against_cost(data: xr.Dataset) -> Figure:
     figure = Figure(figsize=(8.2, 6.0), layout="constrained")
     panels = figure.subplots(2, 2, sharex=True)
     data = data.assign_coords(setting=data["case"].where(data["setting"] == SEVERAL, data["setting"]))
-    settings = list(dict.fromkeys(str(setting) for setting in data["setting"].values))
-    looks = dict(zip(settings, zip(colormaps["tab10"](np.arange(10)), cycle(MARKERS), strict=False), strict=False))
+    looks = looks_of([str(setting) for setting in data["setting"].values])
     for axes, name in zip(panels.flat, MEASURED, strict=True):
         axes.set(xscale="log", yscale="log")
         _panel(axes, errors(data, name), looks)
@@ -46,6 +46,12 @@ def error_against_cost(data: xr.Dataset) -> Figure:
     figure.supylabel(f"difference to {data.attrs['finest']}", fontsize=9)
     figure.legend(handles=_legend(looks), loc="outside right center")
     return figure
+
+
+def looks_of(settings: Iterable[str]) -> dict[str, Look]:
+    """Return colour and marker of every setting; up to forty settings look different."""
+    pairs = zip(cycle(colormaps["tab10"](np.arange(10))), cycle(MARKERS), strict=False)
+    return dict(zip(dict.fromkeys(settings), pairs, strict=False))
 
 
 def errors(data: xr.Dataset, name: str) -> pd.DataFrame:

@@ -10,7 +10,7 @@ from matplotlib.colors import same_color
 from typer.testing import CliRunner
 
 from analysis.accuracy.cases import VariedCase, cases
-from analysis.accuracy.figure import error_against_cost, errors
+from analysis.accuracy.figure import error_against_cost, errors, looks_of
 from analysis.accuracy.measure import accuracy
 from analysis.accuracy.report import markdown
 from analysis.cli import app
@@ -142,6 +142,13 @@ def test_the_figure_shows_the_error_of_each_case_against_its_time_and_what_no_ot
         assert len(hollow) == (~frame["resolved"]).sum() > 0
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert legend == ["particles", "base", "numerics.cfl", "not resolved", "no case beats these"]
+
+
+def test_more_settings_than_colours_look_different() -> None:
+    settings = [f"setting {number}" for number in range(40)]
+    looks = looks_of([*settings, settings[0]])
+    assert list(looks) == settings
+    assert len({(*colour, marker) for colour, marker in looks.values()}) == 40
 
 
 @pytest.mark.parametrize(
