@@ -13,7 +13,7 @@ RESOLUTION = (NONE, "particles")
 """Settings of the cases that differ in resolution alone."""
 
 SEVERAL = "several"
-"""Setting of a case that differs from the base in more than one."""
+"""Setting of a case that differs from the base in more than one, or leaves out a part with all its settings."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,8 @@ def cases(campaign: KeptCampaign) -> dict[str, VariedCase]:
 
 def _case(table: dict[str, Attribute], base: dict[str, Attribute]) -> VariedCase:
     keys = [key for key in table | base if key != "seed" and _value(table, key) != _value(base, key)]
-    setting = keys[0] if len(keys) == 1 else SEVERAL if keys else NONE
+    is_one = len(keys) == 1 and table.get(keys[0], NONE) != NONE
+    setting = keys[0] if is_one else SEVERAL if keys else NONE
     return VariedCase(setting, table.get(setting, NONE), int(table["particles"]))
 
 

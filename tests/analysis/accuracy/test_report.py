@@ -91,11 +91,11 @@ def test_runs_that_are_not_done_do_not_count() -> None:
     assert "1 cases of the study have no finished run" in markdown(found, 5)
 
 
-def test_the_shipped_study_varies_one_setting_a_case_but_for_the_two_of_shock_viscosity(tmp_path: Path) -> None:
+def test_the_shipped_study_varies_one_setting_a_case_but_for_two_of_shock_viscosity_and_all_of_contact(tmp_path: Path) -> None:
     write_json(tmp_path / "campaign.json", expand(read_study(find_study("accuracy")), "accuracy").content())
     found = cases(read_campaign(tmp_path, KeptCampaign))
     assert found["base"].setting == "none"
-    assert [name for name, case in found.items() if case.setting == "several"] == ["shock-viscosity"]
+    assert [name for name, case in found.items() if case.setting == "several"] == ["contact-none", "shock-viscosity"]
     assert found["viscosity.shear350000"] == VariedCase("viscosity.shear", 3.5e5, 1000)
     assert found["particles20000"].particles == 20000
 
