@@ -91,7 +91,7 @@ def test_runs_that_are_not_done_do_not_count() -> None:
     assert "1 cases of the study have no finished run" in markdown(found, 5)
 
 
-def test_the_shipped_study_varies_one_setting_a_case_but_for_two_of_shock_viscosity_and_all_of_contact(tmp_path: Path) -> None:
+def test_the_shipped_study_varies_one_setting_a_case_but_for_shock_viscosity_and_contact(tmp_path: Path) -> None:
     write_json(tmp_path / "campaign.json", expand(read_study(find_study("accuracy")), "accuracy").content())
     found = cases(read_campaign(tmp_path, KeptCampaign))
     assert found["base"].setting == "none"
