@@ -91,9 +91,12 @@ class CampaignRun:
                 self._outcomes[path] = outcome
 
     def _with_reason(self, job: TrackedJob) -> TrackedJob:
-        """The job with the reason that its process gave, where its status has none."""
+        """The job with the reason that its process gave, where its status has none, or that of an earlier session."""
         outcome = self._outcomes.get(job.directory)
-        if outcome is None or job.status.state in (JobState.DONE, JobState.RUNNING) or job.status.reason:
+        if outcome is None or job.status.state in (JobState.DONE, JobState.RUNNING):
+            return job
+        is_older = job.status.state == JobState.INTERRUPTED and outcome.code == ExitCode.FAILED
+        if job.status.reason and not is_older:
             return job
         return replace(job, status=replace(job.status, reason=outcome.reason))
 

@@ -167,6 +167,20 @@ def test_crash_leaves_an_interrupted_job_that_resumes(command, write_study, runs
     assert starts(runs, "v0200_a05") == ["from step 0", "from step 6"]
 
 
+def test_what_the_last_session_says_is_shown_in_place_of_what_an_earlier_one_said(
+    command, write_study, runs, monkeypatch
+):
+    monkeypatch.setenv("FAKE_CRASH", "v0200")
+    command("run", write_study())
+    monkeypatch.delenv("FAKE_CRASH")
+    status = job(runs, "v0200_a05") / "status.json"
+    earlier = {"state": "interrupted", "reason": "stopped by a signal; run again to resume"}
+    status.write_text(json.dumps({**json.loads(status.read_text()), **earlier}))
+    monkeypatch.setenv("FAKE_BAD_DISK", "v0200")
+    told = command("resume", write_study()).out
+    assert "checkpoint.nc: Input/output error: cannot be read now" in told and "stopped by a signal" not in told
+
+
 def test_refused_input_shows_the_engine_s_last_line(command, write_study, monkeypatch):
     monkeypatch.setenv("FAKE_REFUSAL", "v0200")
     result = command("run", write_study())

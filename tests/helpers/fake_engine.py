@@ -1,7 +1,7 @@
 """Stands in for `python -m engine`: counts to ten in a job directory, with the engine's files and exit codes.
 
 FAKE_SECONDS is how long a whole job takes. A job whose name contains FAKE_FAULT fails, FAKE_CRASH kills itself,
-FAKE_REFUSAL finds its input bad.
+FAKE_REFUSAL finds its input bad, FAKE_BAD_DISK cannot read its checkpoint.
 """
 
 import fcntl
@@ -61,6 +61,9 @@ def run(job: Path) -> int:
     if is_asked(job, "REFUSAL"):
         print("scene.json: 'velocity': not today", file=sys.stderr)
         return 2
+    if is_asked(job, "BAD_DISK"):
+        print("checkpoint.nc: Input/output error: cannot be read now", file=sys.stderr)
+        return 1
     for step in range(first, STEPS):
         write(checkpoint, str(step))
         write_status(job, "running", step)
