@@ -1,6 +1,8 @@
 """Runs of small campaigns with the fake engine."""
 
+import errno
 import json
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -228,6 +230,23 @@ def test_a_job_that_cannot_be_read_now_is_kept_and_tried_again(command, write_st
     assert f"{file}: Input/output error: cannot be read now; it is kept" in result.out
     assert "away" not in result.out and "delete" not in result.out
     well.replace(path)
+    assert command("resume", write_study()).code == 0
+
+
+def test_a_job_directory_without_rights_stops_no_other(command, write_study, runs, monkeypatch):
+    is_file = Path.is_file
+
+    def refused(path: Path) -> bool:
+        if path.parent.name.startswith("v0200"):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        return is_file(path)
+
+    command("plan", write_study())
+    monkeypatch.setattr(Path, "is_file", refused)
+    result = command("run", write_study())
+    assert result.code == 1
+    assert "1 done, 1 unreadable" in result.out and "Permission denied: cannot be read now" in result.out
+    monkeypatch.undo()
     assert command("resume", write_study()).code == 0
 
 
