@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from engine.errors import JobError, RunFault
+from engine.errors import JobError, RunFault, UnavailableError
 from engine.job.directory import JobDirectory
-from engine.job.storage import is_finite, read_dataset, require_available
+from engine.job.storage import is_finite, read_attributes, read_dataset
 from engine.quantities import PARTICLES
 
 Array = NDArray[np.float64]
@@ -106,8 +106,8 @@ def snapshots(job: JobDirectory) -> list[tuple[float, Path]]:
 
 def _time(path: Path) -> float:
     try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return float(dataset.attrs["time"])
-    except (OSError, KeyError, ValueError, RuntimeError) as error:
-        require_available(path, error)
+        return float(read_attributes(path)["time"])
+    except UnavailableError:
+        raise
+    except (JobError, KeyError, ValueError) as error:
         raise JobError(f"{path}: not a snapshot: {error}") from error

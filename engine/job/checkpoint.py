@@ -5,9 +5,9 @@ from pathlib import Path
 import xarray as xr
 
 from engine import PHYSICS_VERSION
-from engine.errors import JobError, UnavailableError
+from engine.errors import JobError
 from engine.job.directory import JobDirectory
-from engine.job.storage import is_finite, read_dataset, write_dataset
+from engine.job.storage import is_finite, read_if_sound, write_dataset
 from engine.scene.scene import Scene, is_hash_of
 from engine.simulation.simulation import Simulation
 
@@ -88,15 +88,8 @@ def _readable(path: Path) -> xr.Dataset | None:
     Raises:
         UnavailableError: it cannot be read now; without it the run would begin anew.
     """
-    if not path.exists():
-        return None
-    try:
-        dataset = read_dataset(path)
-    except UnavailableError:
-        raise
-    except JobError:
-        return None
-    return dataset if {*ORIGIN} <= {*dataset.attrs} else None
+    dataset = read_if_sound(path)
+    return dataset if dataset is not None and {*ORIGIN} <= {*dataset.attrs} else None
 
 
 def _is_whole(dataset: xr.Dataset, simulation: Simulation) -> bool:

@@ -15,21 +15,13 @@ from xarray import Dataset
 
 from engine import PHYSICS_VERSION
 from engine.device import backend
-from engine.errors import (
-    MEMORY_IS_FULL,
-    Fault,
-    GuardFault,
-    JobError,
-    SceneError,
-    UnavailableError,
-    is_out_of_memory,
-)
+from engine.errors import MEMORY_IS_FULL, Fault, GuardFault, JobError, SceneError, is_out_of_memory
 from engine.job.checkpoint import load_checkpoint, refuse_foreign, save_checkpoint
 from engine.job.directory import HEARTBEAT_PERIOD, JobDirectory, JobState, Status
 from engine.job.history import History
 from engine.job.provenance import record_session
 from engine.job.snapshot import FIELDS, snapshot
-from engine.job.storage import Attributes, read_dataset, write_dataset
+from engine.job.storage import Attributes, read_dataset, read_if_sound, write_dataset
 from engine.scene.scene import Scene, scene_in
 from engine.simulation.conservation import Row, as_row
 from engine.simulation.guard import Guard
@@ -141,7 +133,8 @@ class Session:
 
     def _begin(self) -> None:
         """Restore the last checkpoint, or start from the scene."""
-        progress, history = load_checkpoint(self.job, self.simulation), self._written_history()
+        # an earlier session wrote its history before its checkpoint
+        progress, history = load_checkpoint(self.job, self.simulation), read_if_sound(self.job.history)
         if progress is not None and history is None and self.simulation.step > 0:
             log.warning("history.nc is lost or damaged: started anew, to the same results")
             self.simulation, progress = Simulation(self.scene), None
@@ -156,19 +149,6 @@ class Session:
         record_session(self.job, self.scene, backend.architecture(), self.options.threads)
         self._write_outputs()
         self._report(JobState.RUNNING)
-
-    def _written_history(self) -> Dataset | None:
-        """History that an earlier session wrote, always before its checkpoint; `None` if it is missing or damaged.
-
-        Raises:
-            UnavailableError: it cannot be read now; without it its rows would be lost.
-        """
-        try:
-            return read_dataset(self.job.history)
-        except UnavailableError:
-            raise
-        except JobError:
-            return None
 
     def _restore(self, progress: dict[str, float], history: Dataset | None) -> None:
         self.history_due, self.snapshot_due = progress["history_due"], progress["snapshot_due"]

@@ -7,11 +7,14 @@ import shutil
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
 
 from engine.errors import JobError, UnavailableError, in_words
+
+Content = TypeVar("Content")
 
 Attributes = Mapping[str, str | int | float]
 """Global attributes of a data set."""
@@ -105,29 +108,52 @@ def read_dataset(path: Path) -> xr.Dataset:
         UnavailableError: the system refuses to read it now.
         JobError: the file is missing or not a complete netCDF file.
     """
-    with suppress(*UNREAD):  # a second time: the disk may have failed for a moment
-        return _loaded(path)
+    return _read(path, xr.Dataset.load)
+
+
+def read_if_sound(path: Path) -> xr.Dataset | None:
+    """Read a whole data set into memory; `None` where the file is missing or damaged.
+
+    Raises:
+        UnavailableError: the system refuses to read it now; what it contains must not count as lost.
+    """
     try:
-        return _loaded(path)
+        return read_dataset(path)
+    except UnavailableError:
+        raise
+    except JobError:
+        return None
+
+
+def read_attributes(path: Path) -> dict[str, Any]:
+    """Read the global attributes of a data set.
+
+    Raises:
+        UnavailableError, JobError: as `read_dataset`.
+    """
+    return _read(path, lambda dataset: dict(dataset.attrs))
+
+
+def _read(path: Path, take: Callable[[xr.Dataset], Content]) -> Content:
+    """What `take` returns of a data set that is open."""
+    with suppress(*UNREAD):  # a second time: the disk may have failed for a moment
+        return _taken(path, take)
+    try:
+        return _taken(path, take)
     except UNREAD as error:
-        require_available(path, error)
+        _require_available(path, error)
         raise JobError(f"{path}: cannot be read as netCDF: {error}") from error
 
 
-def _loaded(path: Path) -> xr.Dataset:
+def _taken(path: Path, take: Callable[[xr.Dataset], Content]) -> Content:
     with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as dataset:
-        return dataset.load()
+        return take(dataset)
 
 
-def require_available(path: Path, error: Exception) -> None:
-    """Tell a file that the system refuses to read from a damaged one, which netCDF does not.
+def _require_available(path: Path, error: Exception) -> None:
+    """Tell a file that the system refuses to read from a damaged one, which netCDF does not: read all its bytes.
 
-    Args:
-        path: the file; all its bytes are read, whatever they are.
-        error: raised when it was read as netCDF, whose own numbers of errors are negative, or EINVAL.
-
-    Raises:
-        UnavailableError: the system refuses to read it now.
+    netCDF's own numbers of errors are negative, or EINVAL.
     """
     with read_or_unavailable(path), suppress(*NO_FILE):
         if isinstance(error, OSError) and (error.errno or 0) > 0 and error.errno != errno.EINVAL:
